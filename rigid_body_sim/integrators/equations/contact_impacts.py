@@ -102,7 +102,8 @@ def collide(p, y, restitution, out):
     e = bearable(G, before, restitution, c.mu)
     given = impulse(G, before, e, c.mu)
     after = plus(before, apply(G, given))
-    loss, normal = -0.5 * dot(given, plus(before, after)), -e * before[2]
+    loss = -0.5 * dot(given, plus(before, after))
+    normal = -e * before[2]
     turn = cross(at.r, rotate_back(*now.q, *given))
     store_omega(y, plus(now.omega, apply(c.inverse, turn)))
     store_u(y, plus(now.u, scaled(1.0 / c.mass, given)))

@@ -30,9 +30,9 @@ def _hop(rates, p, y, work, pace):
     """
     short = SHORT / pace
     for n in (1, 2):
-        later = y + n * short * work[0, :SIZE]
-        rates.rate(p, later, work[n])
-    v, soon, later = work[:3, GAP].tolist()
+        at = y + n * short * work[0, :SIZE]
+        rates.rate(p, at, work[n])
+    v, soon, later = (float(work[n, GAP]) for n in range(3))
     a = (4.0 * soon - 3.0 * v - later) / (2.0 * short)
     j = (later - 2.0 * soon + v) / (short * short)
     rises = v if v > rates.ROUNDING * p[SWIFT] else 0.0
