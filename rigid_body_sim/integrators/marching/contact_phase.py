@@ -16,6 +16,7 @@ TIME, GAP = (UNKNOWNS.part(name).first for name in ('time', 'gap'))
 
 SHORT = 2.0 ** -12    # rad: the time of a difference, over the pace of the motion
 PAST = 1.5            # times the length of a hop that the first step of a flight may have
+LEAST = 2.0 ** -20    # share of the step planned: a shorter hop is rounding
 
 
 def _hop(rates, p, y, work, pace):
@@ -72,7 +73,8 @@ class Phase:
         self.kernels.begin(p, work[0], self.front, self._meta, y)
         if p[MODE] == FLIGHT:
             hop = _hop(bound.rates, p, y, work, self._meta[contact_march.RATE])
-            self._meta[contact_march.PLANNED] = min(self._meta[contact_march.PLANNED], hop)
+            planned = self._meta[contact_march.PLANNED]
+            self._meta[contact_march.PLANNED] = min(planned, max(hop, LEAST * planned))
 
     @property
     def status(self):
