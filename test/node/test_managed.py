@@ -7,6 +7,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
+from node.conftest import START
 from notices import without_notices
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
@@ -23,9 +24,9 @@ class Managed:
         self.client = client
 
     def go(self, transition):
-        """Ask for a transition; return whether it took place."""
-        return self.client.call(
-            ChangeState, f'{NODE}/change_state', transition=Transition(id=transition)).success
+        """Ask for a transition, which may compile; return whether it took place."""
+        return self.client.call(ChangeState, f'{NODE}/change_state', timeout=START,
+                                transition=Transition(id=transition)).success
 
     @property
     def state(self):
