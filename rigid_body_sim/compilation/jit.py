@@ -27,6 +27,8 @@ def _jit(function, **options):
     compile_here = kernel.compile
 
     def compile_once(signature):
+        """Compile for the types of a call, unless another process does: then load that."""
+        # each mention of a kernel in another one asks again: what is known needs no lock
         if isinstance(signature, tuple) and signature in kernel.overloads:
             return compile_here(signature)
         with kernel._cache.alone():

@@ -26,8 +26,8 @@ def _hop(rates, p, y, work, pace):
 
         v t + a t^2/2 + j t^3/6
 
-    and falls again where a falling term outweighs a rising one. `work` is the rows of rates, of
-    which row 0 holds those at y.
+    and falls again where a falling term outweighs a rising one. The rates at y are in row 0 of
+    `work`; rows 1 and 2 are filled.
     """
     short = SHORT / pace
     for n in (1, 2):
