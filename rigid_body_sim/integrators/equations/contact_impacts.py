@@ -65,7 +65,7 @@ def loss_of(G, before, restitution, mu):
 def bearable(G, before, restitution, mu):
     """Return the largest restitution, up to the one given, with which an impact creates no energy.
 
-    The arguments are those of :func:`mechanics.contact.laws.impulse`; it sticks or slides as there.
+    The arguments are those of :func:`mechanics.contact.laws.impulse`.
     """
     if loss_of(G, before, restitution, mu) >= 0.0:
         return restitution
