@@ -9,12 +9,13 @@ was measured to meet the accuracy (measured.py), after trial runs on the scene i
 import functools
 import logging
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rigid_body_sim.choice import measured, settling
+from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.exact_forecast import of_exact
 from rigid_body_sim.choice.forecast import Forecast, missed
 from rigid_body_sim.compilation import jit
@@ -24,7 +25,7 @@ from rigid_body_sim.integrators.protocols import FINEST, Solver
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
-from rigid_body_sim.motions.nearly import differ, nearly_absorbing, takes_any_moments
+from rigid_body_sim.motions.nearly import is_exact, nearly_absorbing
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
@@ -172,7 +173,31 @@ class Choice:
     @functools.cached_property
     def rests_on_start(self):
         """Whether it is a closed form that another start of the scene may not have."""
-        return self._asks or (self.method == 'exact' and self._prototype.is_nearly)
+        return self._asks or self.is_nearly
+
+    @property
+    def is_nearly(self):
+        """Whether it is the closed form of a scene nearly this one: its error is of the start."""
+        return self.method == 'exact' and self._prototype.is_nearly
+
+    def finer(self):
+        """Return a Choice of the method with a finer tolerance, beside which its errors show.
+
+        It is this one in closed form but for what goes on where that does not hold.
+
+        Raises
+        ------
+        BadInput
+            Fixed steps have no tolerance; the tolerance is the finest already.
+        """
+        if self.tolerance is None:
+            raise BadInput('step', f'got {self.step!r}', 'an accuracy: fixed steps are not tried')
+        finer = max(FINEST, FINER * self.tolerance)
+        if finer == self.tolerance:
+            raise BadInput('accuracy', f'takes a tolerance of {self.tolerance!r}',
+                           'a coarser one: no finer run tells its error')
+        stepped = {} if self.method == 'exact' else {'_prototype': self._prototype.at(finer)}
+        return replace(self, tolerance=finer, **stepped)
 
     def _holds(self, start):
         """Return whether the prototype goes on from a state."""
@@ -341,8 +366,7 @@ class _Closed(NamedTuple):
 def _closed_form(scene, horizon):
     """Return the _Closed of a scene, or None."""
     motion = absorbing_motion(scene)
-    if motion and (not differ(scene, scene.constraint.inertia(scene.body).moments)
-                   or takes_any_moments(motion, scene)):
+    if motion and is_exact(motion, scene):
         return _Closed(motion, scene, 0.0, 0.0)
     nearly = nearly_absorbing(scene, horizon)
     if nearly is None:

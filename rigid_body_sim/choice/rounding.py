@@ -16,7 +16,7 @@ import numpy as np
 from rigid_body_sim.choice.comparison import apart
 from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.choice.runs import run
-from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import matrix, normalised
 from rigid_body_sim.numerics.vectors import apply, transposed
@@ -47,6 +47,24 @@ def of_angle_turned(scene, states, times):
         fastest = fastest + np.maximum(0.0, fastest - first)
     numbers = 4.0 if scene.constraint.axis is None else 8.0
     return HALF_ULP * (numbers + fastest * times)
+
+
+def of_starts(scene, starts, time):
+    """Return half an ulp of all the angle that bodies may turn from starts to a time, rad, (n,).
+
+    Parameters
+    ----------
+    starts : array (n, 14)
+    time : float
+        s.
+    """
+    x, y, z = starts[:, ANGULAR_VELOCITY].T
+    turned = np.sqrt(x * x + y * y + z * z)
+    turned += swing_rate(scene)
+    turned *= time
+    turned += 4.0 + 0.5 * drive(scene, None) * time * time
+    turned *= HALF_ULP
+    return turned
 
 
 def conditioning(scene, prototype, times, states, enough=math.inf):

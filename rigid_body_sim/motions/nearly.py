@@ -77,6 +77,15 @@ def takes_any_moments(motion, scene):
     return motion.absorbs(_with_inertia(scene, apart))
 
 
+def is_exact(motion, scene):
+    """Return whether a motion that absorbs a scene leaves nothing out.
+
+    It does where it takes two moments as equal that differ by what one double does not hold.
+    """
+    moments = scene.constraint.inertia(scene.body).moments
+    return not differ(scene, moments) or takes_any_moments(motion, scene)
+
+
 def nearly_absorbing(scene, horizon):
     """Return the Nearly of a scene that is nearly symmetric, or None.
 

@@ -18,6 +18,7 @@ from rigid_body_sim.choice.choose import HORIZON, choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.motions import MOTIONS, absorbing_motion
+from rigid_body_sim.motions.nearly import is_exact
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import AXES, PLACES, STATE_SIZE, UNITS
 from rigid_body_sim.sweeps.quantities import QUANTITIES, unit_of_key
@@ -234,7 +235,7 @@ def starts_alone_differ(scene, integrator):
         return False
     if integrator in ('auto', 'exact'):
         motion = absorbing_motion(scene)
-        return motion is not None and motion.takes is None
+        return motion is not None and motion.takes is None and is_exact(motion, scene)
     # whether internal dissipation is stiff depends on the start
     return scene.inner_dissipation == 0.0
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigid_body_sim.choice.measured import HALF_ULP
-from rigid_body_sim.mechanics.bounds import drive, swing_momentum, swing_rate
+from rigid_body_sim.choice.rounding import of_starts
+from rigid_body_sim.mechanics.bounds import swing_momentum
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, AXES, PLACES, STATE_SIZE, States
+from rigid_body_sim.scene.state import AXES, PLACES, STATE_SIZE, States
 from rigid_body_sim.sweeps import plan as plans
 from rigid_body_sim.sweeps.functions import Run, length_of, returned
 from rigid_body_sim.sweeps.quantities import QUANTITIES, diagnosis
@@ -196,15 +196,7 @@ def _expected(choice, scene, starts, alone):
         return math.nan
     if choice.method != 'exact' or not alone:
         return choice.expected_error
-    # as choose has it for one start: half an ulp of all the angle turned, to which torque adds
-    x, y, z = starts[:, ANGULAR_VELOCITY].T
-    horizon = choice.horizon
-    turned = np.sqrt(x * x + y * y + z * z)
-    turned += swing_rate(scene)
-    turned *= horizon
-    turned += 4.0 + 0.5 * drive(scene, None) * horizon * horizon
-    turned *= HALF_ULP
-    return turned
+    return of_starts(scene, starts, choice.horizon)
 
 
 def _residuals(scene, choice, starts, ends, time):
