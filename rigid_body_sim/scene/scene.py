@@ -10,6 +10,7 @@ import dataclasses
 import functools
 import math
 import operator
+import os
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -239,11 +240,14 @@ def load_scene(name_or_path: str | pathlib.Path,
     BadInput
         One line: file, key path, value, what would be right.
     """
+    if not isinstance(name_or_path, str | os.PathLike) or '\n' in str(name_or_path):
+        raise BadInput('scene', f'got a {type(name_or_path).__name__} that is no name and no path',
+                       'a name or a path; `parse_scene` takes the text of a scene')
     text = str(name_or_path)
     path = pathlib.Path(text)
     if path.suffix not in ('.yaml', '.yml') and '/' not in text:
         path = scene_folder() / f'{text}.yaml'
-        if not path.is_file():
+        if not os.path.isfile(path):    # False also for a name too long for a file
             near = nearest(text, scene_names())
             hint = f'did you mean {near}?' if near else \
                 f'the scenes are {", ".join(scene_names())}'

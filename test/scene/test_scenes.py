@@ -93,6 +93,16 @@ def test_unknown_scene_names_the_nearest():
         load_scene('tenis_racket')
 
 
+@pytest.mark.parametrize(('scene', 'words'), [
+    ({'scene': 'mine'}, 'got a dict that is no name and no path'),
+    ('scene: mine\nconstraint: free\n', '`parse_scene` takes the text of a scene'),
+    ('a' * 300, 'no scene'), ('nul\0', 'no scene')])
+def test_what_is_no_name_gets_one_line(scene, words):
+    with pytest.raises(BadInput, match=words) as caught:
+        load_scene(scene)
+    assert '\n' not in str(caught.value)
+
+
 def test_missing_file_is_said(tmp_path):
     with pytest.raises(BadInput, match='cannot read'):
         load_scene(tmp_path / 'none.yaml')

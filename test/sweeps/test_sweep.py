@@ -16,7 +16,7 @@ from soak import IN_SOAK
 
 pytest.importorskip('xarray')
 
-from rigid_body_sim import BadInput, Simulation, sweep
+from rigid_body_sim import BadInput, Simulation, parse_scene, sweep
 from rigid_body_sim.compilation.threads import on_all_cores, one_core
 from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps import stores, work
@@ -43,6 +43,14 @@ TOP = {'scene': {
     'vary': {'gravity.g': [1.62, 9.81],
              'initial.angular_velocity.2': {'linspace': [20.0, 60.0, 9]}},
     'times': [0.5, 2.0], 'keep': ['final', {'first': 'turning point'}]}
+
+NEEDLE = {'scene': {
+    'scene': 'needle', 'constraint': 'pivot', 'effects': [{'gravity': {'g': 1.0}}],
+    'body': {'mass': 0.5, 'inertia': [0.037, math.nextafter(0.037, 1.0), 3.7e-8],
+             'center_of_mass': [0, 0, 0.25]},
+    'initial': {'orientation': [0.1, 0.5, -0.2, 0.8], 'angular_velocity': [3, -2, 1]}},
+    'vary': {'initial.angular_velocity.1': [-2.0, -20.0]}, 'times': [5.0], 'accuracy': 1e-6,
+    'keep': ['final']}
 
 
 def same(ours, theirs):
@@ -77,6 +85,22 @@ def test_each_run_has_the_bits_of_a_simulation_alone():
             ledger = alone.ledger()
             assert run['energy_residual'] == ledger['energy_residual']
             assert run['momentum_residual'] == ledger['momentum_residual']
+
+
+def test_runs_in_a_closed_form_of_a_body_nearly_theirs_tell_its_error_from_their_own_starts():
+    """I1 - I2 is 7e-18 kg m^2, which the parallel-axis theorem rounds away; it turns a needle.
+
+    Half an ulp of the angle turned is 2e-15 rad.
+    """
+    found = sweep(NEEDLE)
+    told = found['expected_error'].values
+    for k, omega in enumerate(found['initial.angular_velocity.1'].values):
+        alone = Simulation(parse_scene(json.dumps(NEEDLE['scene']),
+                                       {'initial.angular_velocity.1': omega}),
+                           accuracy=1e-6, horizon=5.0)
+        assert alone.choice.method == 'exact'
+        assert told[k] == np.float32(alone.choice.expected_error)
+    assert 1e-9 < told[0] < 1e-8 < told[1] < 1e-6    # 5.0e-9, 1.9e-7
 
 
 @pytest.mark.parametrize('spec', [
