@@ -11,10 +11,12 @@ import contextlib
 import os
 import threading
 import time
+import types
 
 PARTS = 8    # slices for each core, so that the last one to finish is short
 SLICE = 0.05    # time that the call of a kernel should take, s
 _mine = threading.local()
+_threads = types.SimpleNamespace(process=None, pool=None)
 
 
 class Abandoned(Exception):
@@ -83,10 +85,10 @@ def on_all_cores(work, count, least=1):
     chunk = max(1, least, -(-count // (PARTS * os.cpu_count())))
     parts = iter([slice(first, min(first + chunk, count)) for first in range(0, count, chunk)])
 
-    stop, outer = threading.Event(), getattr(_mine, 'stop', None)
+    stop = threading.Event()
 
     def take():
-        _mine.stop = stop
+        outer, _mine.stop = getattr(_mine, 'stop', None), stop
         try:
             for part in parts:
                 look()
@@ -101,18 +103,34 @@ def on_all_cores(work, count, least=1):
         for part in parts:
             work(part)
         return
-    # the calling thread does its share: starting another one costs as much as a hundred tops in
-    # closed form
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
-        others = [threads.submit(take) for _ in range(os.cpu_count() - 1)]
-        try:
-            take()
-            concurrent.futures.wait(others)
-        except Abandoned:
-            concurrent.futures.wait(others)
-        except BaseException:
-            stop.set()
-            raise
-        for other in others:
-            if not isinstance(other.exception(), Abandoned):
-                other.result()
+    # the calling thread does its share; when it has found no more, none is left for those that no
+    # thread has taken up yet
+    others = [_pool().submit(take) for _ in range(os.cpu_count() - 1)]
+    try:
+        take()
+        _wait(others)
+    except Abandoned:
+        _wait(others)
+    except BaseException:
+        stop.set()
+        _wait(others)
+        raise
+    for other in others:
+        if not other.cancelled() and not isinstance(other.exception(), Abandoned):
+            other.result()
+
+
+def _wait(others):
+    """Wait for those that have begun; the others are cancelled."""
+    concurrent.futures.wait([other for other in others if not other.cancel()])
+
+
+def _pool():
+    """Return the threads of this process: starting them anew costs as much as 500 racket states.
+
+    A process that was forked has none of them, and makes its own.
+    """
+    if _threads.process != os.getpid():
+        _threads.process = os.getpid()
+        _threads.pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count(), 'kernels')
+    return _threads.pool

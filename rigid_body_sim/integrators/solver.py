@@ -239,7 +239,7 @@ class Stepped:
         for body in np.flatnonzero((first < begins) | (last > _latest(begins, rates))):
             with _naming(body):
                 self.start(starts[body])._within(first, last)
-        on_all_cores(side_by_side, len(starts), 4 * LANES)
+        on_all_cores(side_by_side, len(starts), 8 * LANES)
 
     def _check(self, rows):
         """Raise if a pivot that moves has left what doubles hold: nothing is solved for it."""

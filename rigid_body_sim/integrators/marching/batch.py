@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many bodies of a scene by Taylor series, eight at once: taylor's mode for ensembles.
 
-batch_lane.py has the numbers of a body, batch_series.py a step in the vector unit, batch_march.py
+batch_lane.py has the numbers of a body, batch_step.py a step in the vector unit, batch_march.py
 the march.
 
 The states agree with those of the method to the accuracy asked, not to the bit, since order and
@@ -16,11 +16,18 @@ from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import in_slices
 from rigid_body_sim.integrators.equations import euler, series
-from rigid_body_sim.integrators.marching import batch_lane, batch_march, batch_series
+from rigid_body_sim.integrators.marching import (
+    batch_directions,
+    batch_hinge,
+    batch_lane,
+    batch_march,
+    batch_turning,
+)
 from rigid_body_sim.integrators.marching.batch_march import ANYBODY, NOBODY, SEATS
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import from_matrix
+from rigid_body_sim.numerics.rotations import from_matrix, multiply, rotate
 from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
+from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 ROUNDS = 64    # rounds of steps in the first call of the march
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
@@ -48,30 +55,52 @@ def directions(force, couple):
     return first, second, cross(first, second)
 
 
-def rows_for(p):
+def rows_for(p, hinge):
     """Return the directions, and the rows of lanes with the numbers of the equations.
 
-    p holds the parameters of equations/series.py.
+    p holds the parameters of equations/series.py; `hinge` is that of the frame, or None. The
+    directions of a body on a hinge are the axes of its frame where the angle is 0.
     """
     def numbers(layout, name):
         return p[layout.part(name).places].tolist()
 
     inverse = numbers(euler.EQUATION, 'inverse')
     force, couple = numbers(series.SERIES, 'force'), numbers(series.SERIES, 'couple')
-    rows, table = directions(force, couple), np.zeros((batch_lane.ROWS, LANES))
-    along, aside, _ = apply(rows, couple)
-    u1, u2, u3, u4, u5, u6 = numbers(series.SERIES, 'pull')
-    pull = hypot3(*force) * np.array(((0.0, u1, u2), (u4, 0.0, u3), (u5, u6, 0.0)))
+    constant, (u1, u2, u3, u4, u5, u6) = (
+        numbers(series.SERIES, 'constant'), numbers(series.SERIES, 'pull'))
+    if hinge:
+        axes = multiply(*hinge.zero, *euler.load_axes(p))
+        rows = tuple(rotate(*axes, *(float(k == i) for k in range(3))) for i in range(3))
+        across, aside, _ = apply(rows, force)
+        # the second direction is (-y, x, 0) in the body where the first one is (x, y, 0)
+        pull = np.zeros((3, 3))
+        pull[2] = across * u5 + aside * u6, across * u6 - aside * u5, 0.0
+        constant[2] += inverse[2] * apply(rows, couple)[2]
+        second = (0.0, 0.0, 0.0)
+    else:
+        rows = directions(force, couple)
+        along, aside, _ = apply(rows, couple)
+        pull = hypot3(*force) * np.array(((0.0, u1, u2), (u4, 0.0, u3), (u5, u6, 0.0)))
+        pull += np.diag(scaled(along, inverse))
+        second = scaled(aside, inverse)
+    table = np.zeros((batch_lane.ROWS, LANES))
     for at, values in (
         (batch_lane.EULER, numbers(euler.EQUATION, 'euler')),
-        (batch_lane.CONSTANT, numbers(series.SERIES, 'constant')),
-        (batch_lane.U, (pull + np.diag(scaled(along, inverse))).ravel()),
-        (batch_lane.V, scaled(aside, inverse)),
+        (batch_lane.CONSTANT, constant),
+        (batch_lane.U, pull.ravel()),
+        (batch_lane.V, second),
         (batch_lane.DRAG, numbers(series.SERIES, 'drag')),
         (batch_lane.INVERSES, 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0)),
     ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
     return rows, table
+
+
+def _form(equations):
+    """Return the module with the Form of a scene's equations."""
+    if equations.hinged:
+        return batch_hinge
+    return batch_directions if equations.pushed or equations.coupled else batch_turning
 
 
 class Batch:
@@ -89,9 +118,10 @@ class Batch:
     def __init__(self, equations, tolerance, times):
         self._tolerance, self._times, self._stretches = tolerance, times, []
         self._order = np.argsort(times, kind='stable')
-        step = ('advance_on_hinge' if equations.hinged
-                else 'advance_with_drag' if equations.dragged else 'advance')
-        self._kernels = specialise(batch_march, advance=f'{batch_series.__name__}:{step}')
+        form, dragged = _form(equations), equations.dragged and not equations.hinged
+        self._kernels = specialise(
+            batch_march, advance=f'{form.__name__}:advance{"_with_drag" if dragged else ""}',
+            between=f'{form.__name__}:between', unknowns=f'{form.__name__}:unknowns')
         rising, begin = times[self._order], -math.inf
         # between two breakpoints the equations hold, and their result at the end is the start of
         # the next stretch
@@ -100,7 +130,7 @@ class Batch:
                 equations.held(begin),
                 np.searchsorted(rising, (begin, end)).tolist(),
             )
-            rows, table = rows_for(p)
+            rows, table = rows_for(p, equations.frame.hinge)
             turn = from_matrix(tuple(zip(*rows, strict=True)))
             self._stretches.append((table, np.tile(p, (LANES, 1)), turn, first, last, end))
             begin = end
@@ -116,7 +146,10 @@ class Batch:
         clock resolves, its time), or None.
         """
         states, seats = starts.copy(), np.empty(SEATS, dtype=np.int64)
+        begin = starts[:, STATE_TIME].min(initial=math.inf)
         for table, p, turn, first, last, end in self._stretches:
+            if end <= begin and first == last:
+                continue    # it is over before the first body starts
             W, numbers, found = _on_lines(table), p.copy(), []
 
             def arrived(rounds, W=W, numbers=numbers, turn=turn, stretch=(first, last, end),

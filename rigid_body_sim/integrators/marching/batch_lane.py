@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The numbers of a body in a lane of a batch, as one view, and the rows where they stand.
 
-batch_series.py says what the unknowns are and what the equations take.
+batch_directions.py, batch_turning.py and batch_hinge.py say what the unknowns are and what the
+equations take.
 """
 
 from typing import NamedTuple
@@ -9,13 +10,17 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 
 ORDER = 18
+DIRECTIONS = 6    # components of two directions
 
 
 class Unknowns(NamedTuple):
-    """The unknowns of a body, or the coefficients of an order."""
+    """The unknowns of a body, or the coefficients of an order.
 
-    e1: Vector
-    e2: Vector
+    The attitude is given by two directions of the world, seen in the body; a quaternion or one
+    direction across a hinge takes fewer places, and the others stay 0.
+    """
+
+    attitude: tuple[(float,) * DIRECTIONS]
     omega: Vector
 
 
@@ -63,7 +68,7 @@ class Lane(NamedTuple):
 
 UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
 UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
-DIRECTIONS = UNKNOWN.part('omega').first    # unknowns before omega: e1, e2
+OMEGA = UNKNOWN.part('omega').first    # the first of its components
 
 # rows; those of the coefficients follow those of the unknowns, which are order 0
 TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Template: march of many bodies, eight at a time; one that arrives gives its lane to the next."""
+"""Template: march of many bodies, eight at a time; one that arrives gives its lane to the next.
+
+Bound are the step, what is between two points and the unknowns of a Form (batch_step.py).
+"""
 
 import math
 
@@ -16,11 +19,12 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     Point,
     Unknowns,
 )
-from rigid_body_sim.integrators.marching.batch_series import between
-from rigid_body_sim.numerics.rotations import multiply, rotate_back
+from rigid_body_sim.numerics.rotations import multiply
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 advance = UNBOUND
+between = UNBOUND
+unknowns = UNBOUND
 
 # a lane is a column of W: its numbers stand LANES places apart
 COLUMN = layout(Lane, LANES)
@@ -29,9 +33,9 @@ store_point, load_found = POINT.store, COLUMN.part('found').load
 load_sound = COLUMN.part('sound').load
 load_time, load_later = POINT.part('time').load, LATER.part('time').load
 load_q, load_omega = POINT.part('q').load, POINT.part('y').part('omega').load
+load_later_q, load_later_omega = LATER.part('q').load, LATER.part('y').part('omega').load
 store_end, store_since = COLUMN.part('end').store, COLUMN.part('since').store
-NONE = 0.0, 0.0, 0.0
-NONE_LOST = Unknowns(NONE, NONE, NONE)
+NONE_LOST = Unknowns((0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 NOBODY, ANYBODY = -1, -2    # no number of a body: none has failed; the march has paused
 # in `seats`: which body sits in a lane, and the place of its next time; which body is next, how
@@ -122,9 +126,8 @@ def _seat(W, p, turn, lane, state, target):
     q, omega, _, _ = read_state(p, state)
     x, y, z, w = turn
     q = multiply(-x, -y, -z, w, *q)
-    e1, e2 = rotate_back(*q, 1.0, 0.0, 0.0), rotate_back(*q, 0.0, 1.0, 0.0)
     store_point(
-        W, Point(state[STATE_TIME], 0.0, 0.0, NONE_LOST, q, Unknowns(e1, e2, omega)), lane)
+        W, Point(state[STATE_TIME], 0.0, 0.0, NONE_LOST, q, unknowns(q, omega)), lane)
     store_end(W, target, lane)
 
 
@@ -136,24 +139,34 @@ def _write(p, turn, q, omega, time, out):
 
 @compiled
 def _give(W, p, turn, seats, times, order, last, out):
-    """Write the states at all times within the step: of each lane one time in turn."""
+    """Write the states at all times within the step: of each lane one time in turn.
+
+    At the end of a step the state is that of the following point.
+    """
     due = True
     while due:
-        due = False
+        due = among = False
         for lane in range(len(p)):
             store_since(W, 0.0, lane)
-            if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
-                time = times[order[seats[NEXT + lane]]]
-                if time <= load_later(W, lane):
-                    store_since(W, time - load_time(W, lane), lane)
+            body = seats[BODY + lane]
+            if body != NOBODY and seats[NEXT + lane] < last:
+                k, begin, end = (order[seats[NEXT + lane]], load_time(W, lane),
+                                 load_later(W, lane))
+                if times[k] < end:
+                    store_since(W, times[k] - begin, lane)
+                    due = among = True
+                elif times[k] == end:
+                    _write(p[lane], turn, load_later_q(W, lane), load_later_omega(W, lane), end,
+                           out[body, k])
+                    seats[NEXT + lane] += 1
                     due = True
-        if due:
+        if among:
             between(W, ())
             for lane in range(len(p)):
-                if seats[BODY + lane] != NOBODY and seats[NEXT + lane] < last:
+                body = seats[BODY + lane]
+                if body != NOBODY and seats[NEXT + lane] < last:
                     k = order[seats[NEXT + lane]]
-                    if times[k] <= load_later(W, lane):
+                    if times[k] < load_later(W, lane):
                         found = load_found(W, lane)
-                        _write(p[lane], turn, found.q, found.omega, times[k],
-                               out[seats[BODY + lane], k])
+                        _write(p[lane], turn, found.q, found.omega, times[k], out[body, k])
                         seats[NEXT + lane] += 1

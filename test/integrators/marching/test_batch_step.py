@@ -9,25 +9,30 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.compilation.lanes import LANES, Plain
-from rigid_body_sim.integrators.marching import batch_lane
-from rigid_body_sim.integrators.marching import batch_series as series
+from rigid_body_sim.integrators.marching import (
+    batch_directions,
+    batch_hinge,
+    batch_lane,
+    batch_step,
+    batch_turning,
+)
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, UNMOVED
 
 O = Plain()
 
 
-def longest(final, before, last, scale, tolerance2=1e-20):
+def longest(final, before, last, scale, tolerance2=1e-20, form=batch_directions.FORM):
     """Return the step that the last two orders allow, in the eight lanes.
 
-    `final` and `before` are nine coefficients: of two directions, and of omega.
+    `final` and `before` are nine coefficients: of the attitude, and of omega.
     """
     table = np.zeros((batch_lane.ROWS, LANES))
     table[batch_lane.STEP] = last
     for order, values in ((batch_lane.ORDER, final), (batch_lane.ORDER - 1, before)):
         begin = batch_lane.SERIES + batch_lane.UNKNOWNS * order
         table[begin:begin + batch_lane.UNKNOWNS] = np.reshape(values, (-1, 1))
-    found = series._longest(O, table.ravel(), lambda place: table[place], tolerance2,
-                            np.full(LANES, scale))
+    found = batch_step.longest(
+        O, batch_step.Rows(O, table.ravel()), tolerance2, np.full(LANES, scale), form)
     assert (found == found[0]).all()
     return float(found[0])
 
@@ -54,6 +59,17 @@ def test_a_step_is_what_the_larger_of_the_last_two_terms_allows(final, before, l
     assert longest(final, before, last, scale) == near(step, rel=0.08)
 
 
+@pytest.mark.parametrize(('form', 'attitude', 'omega'), [
+    (batch_turning.FORM, (0, 1, 2, 3), (6, 7, 8)), (batch_hinge.FORM, (0, 1), (8,))],
+    ids=['turning', 'hinge'])
+def test_terms_of_other_attitudes_count_several_times_and_what_does_not_move_not_at_all(
+        form, attitude, omega):
+    final = np.full(9, 1e30)
+    final[list(attitude)], final[list(omega)] = 3e-3, 5e-3
+    square = form.counts * len(attitude) * 9e-6 + len(omega) * 25e-6 / 4.0
+    assert longest(final, [0.0] * 9, 0.5, 4.0, form=form) == near(allowed(square * 0.25), rel=0.08)
+
+
 def test_a_step_grows_by_a_bounded_factor_also_where_all_terms_vanish():
     assert longest([0.0] * 9, [0.0] * 9, 0.25, 1.0) == GROWTH * 0.25
 
@@ -73,7 +89,7 @@ def lanes(values):
 @pytest.mark.parametrize('angle', [(0.3, -0.2, 0.5), (2.0, 1.0, -3.0), (0.0, 0.0, 6.0)])
 def test_a_guess_turns_about_the_rotation_vector(angle):
     q = Rotation.from_rotvec([0.4, 1.0, -0.7])
-    found = np.array(series._turned(O, lanes(q.as_quat()), lanes(angle)))[:, 0]
+    found = np.array(batch_directions._turned(O, lanes(q.as_quat()), lanes(angle)))[:, 0]
     half = 0.5 * np.linalg.norm(angle)
     turn = [*(np.sin(half) / half * 0.5 * np.array(angle)), np.cos(half)]
     x, y, z, w = turn
@@ -90,12 +106,12 @@ def test_an_attitude_is_that_of_its_directions_with_the_sign_of_the_guess(seed, 
     q = sign * Rotation.random(random_state=seed).as_quat()
     matrix = Rotation.from_quat(q).as_matrix()
     guess = q + 0.1 * np.random.default_rng(seed).normal(size=4)
-    found = series._attitude(O, lanes([*matrix[0], *matrix[1]]), lanes(guess))
+    found = batch_directions._attitude(O, lanes([*matrix[0], *matrix[1]]), lanes(guess))
     assert np.array(found)[:, 0] == pytest.approx(q, abs=1e-15)
 
 
 @pytest.mark.parametrize('q', np.vstack([np.eye(4), -np.eye(4)]).tolist())
 def test_an_attitude_of_a_half_turn_has_no_division_by_nothing(q):
     matrix = Rotation.from_quat(q).as_matrix()
-    found = series._attitude(O, lanes([*matrix[0], *matrix[1]]), lanes(q))
+    found = batch_directions._attitude(O, lanes([*matrix[0], *matrix[1]]), lanes(q))
     assert np.array(found)[:, 0] == pytest.approx(q, abs=1e-15)

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Eight bodies at once by directions of the world: under forces and couples fixed in it.
+
+The unknowns are two directions of the world seen in the body, e1 and e2, and omega:
+
+    e' = e x omega,
+    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2 + D omega)_1
+
+and cyclically, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
+in the world, and D is the matrix of drag, by 15 products of two series for each order. Their
+Cauchy sums are loops; the two terms with the newest coefficients are added after the loop, so that
+it need not wait for them.
+
+The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
+to the result of integrating omega alone.
+"""
+
+from functools import partial
+from typing import NamedTuple
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.lanes import compiled_lanes
+from rigid_body_sim.compilation.layout import Pair, Vector, layout
+from rigid_body_sim.integrators.marching.batch_lane import (
+    CONSTANT,
+    DIRECTIONS,
+    DRAG,
+    EULER,
+    INVERSES,
+    OMEGA,
+    ORDER,
+    UNKNOWNS,
+    U,
+    Unknowns,
+    V,
+)
+from rigid_body_sim.integrators.marching.batch_step import (
+    Form,
+    between_of,
+    half_turn,
+    restored,
+    square_of,
+    step_of,
+)
+from rigid_body_sim.numerics.rotations import rotate_back
+
+
+class Sums(NamedTuple):
+    """The sums of `_products`: of e x omega what is added and what is subtracted, then omega'."""
+
+    e1: tuple[Pair, Pair, Pair]
+    e2: tuple[Pair, Pair, Pair]
+    gyroscopic: Vector
+
+
+SUMS, GYROSCOPIC = layout(Sums).size, layout(Sums).part('gyroscopic').first
+# of each component of e1 and e2: places of what is added, and of what is subtracted
+SIGNED = [[[layout(Sums).part(name).part(i).part(sign).first for sign in (0, 1)]
+           for i in range(3)] for name in ('e1', 'e2')]
+OF_DIRECTIONS, OF_OMEGA = range(DIRECTIONS), range(OMEGA, UNKNOWNS)
+
+
+@compiled
+def unknowns(q, omega):
+    """Return the Unknowns of an attitude and an angular velocity."""
+    e1, e2 = rotate_back(*q, 1.0, 0.0, 0.0), rotate_back(*q, 0.0, 1.0, 0.0)
+    return Unknowns((*e1, *e2), omega)
+
+
+def _directions(e):
+    """Return e1 and e2 of their six components."""
+    x1, y1, z1, x2, y2, z2 = e
+    return (x1, y1, z1), (x2, y2, z2)
+
+
+def _products(o, sums, e, w, others):
+    """Return the 15 sums, those of e x omega by sign, with one more pair of orders.
+
+    Added are the products of e and w of one order with omega of the other.
+    """
+    made = list(sums)
+    for vector, places in zip(_directions(e), SIGNED, strict=True):
+        for i, (added, subtracted) in enumerate(places):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            for place, a, b in ((added, j, k), (subtracted, k, j)):
+                made[place] = o.gather(vector[a], others[b], made[place])
+    for i in range(3):
+        at = GYROSCOPIC + i
+        made[at] = o.gather(w[(i + 1) % 3], others[(i + 2) % 3], made[at])
+    return made
+
+
+def _fill(o, row, dragged=False):
+    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
+    def e_of(order):
+        return row.coefficients(order, OF_DIRECTIONS)
+
+    def omega_of(order):
+        return row.coefficients(order, OF_OMEGA)
+
+    def next_order(k, sums, constant):
+        e, w = e_of(k), omega_of(k) if dragged else ()
+        e1, e2 = _directions(e)
+        changes = [o.plus(sums[added], o.minus(sums[subtracted]))
+                   for places in SIGNED for added, subtracted in places]
+        for i in range(3):
+            # terms that are known first come first
+            rate = (
+                o.gather(row(V + i), e2[i], row(CONSTANT + i))
+                if constant
+                else o.times(row(V + i), e2[i])
+            )
+            for j in range(3):
+                rate = o.gather(row(U + 3 * i + j), e1[j], rate)
+            for j in range(3) if dragged else ():
+                rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
+            changes.append(o.gather(row(EULER + i), sums[GYROSCOPIC + i], rate))
+        share = row.share(INVERSES, k)
+        for i, change in enumerate(changes):
+            row.put_coefficient(o.times(share, change), k, i)
+
+    none = [o.none()] * SUMS
+    first, first_rates = e_of(0), omega_of(0)
+    next_order(0, _products(o, none, first, first_rates, first_rates), True)
+
+    def order(k, _):
+        def pair(i, sums):
+            rest = o.place(k, -1, i)
+            return _products(o, sums, e_of(i), omega_of(i), omega_of(rest))
+        sums = o.repeat(1, k, none, pair)
+        newest = omega_of(k)
+        sums = _products(o, sums, e_of(0), omega_of(0), newest)
+        next_order(k, _products(o, sums, e_of(k), newest, omega_of(0)), False)
+        return []
+    o.repeat(1, ORDER, [], order)
+
+
+def _unit(o, values, lost):
+    """Return the unknowns with e1 and e2 of length 1 and at a right angle, and what they lost."""
+    half, e = o.everywhere(o.number(-0.5)), values[:DIRECTIONS]
+    e1, e2 = _directions(e)
+    one, values, lost = o.everywhere(o.number(-1.0)), list(values), list(lost)
+    slant = o.none()
+    for a, b in zip(e1, e2, strict=True):
+        slant = o.gather(a, b, slant)
+    n1, n2, s = (o.times(half, x) for x in (square_of(o, e1, one), square_of(o, e2, one), slant))
+    for i, (n, own, other) in enumerate(zip((n1, n1, n1, n2, n2, n2), e, (*e2, *e1), strict=True)):
+        back = o.gather(n, own, o.gather(s, other, lost[i]))
+        values[i], lost[i] = restored(o, own, back, lost[i])
+    return values, lost
+
+
+def _turned(o, q, angle):
+    """Return q turned by about the rotation vector: its size in cos and sin counts to 8 rad."""
+    vector, scalar = half_turn(o, angle)
+    return _quaternion_product(o, q, [*vector, scalar])
+
+
+def _quaternion_product(o, p, q):
+    """Return the quaternion of the rotation q followed by p."""
+    def sum_of(*terms):
+        found = o.times(terms[0][1], terms[0][2])
+        for sign, a, b in terms[1:]:
+            found = o.gather(a if sign > 0 else o.minus(a), b, found)
+        return found
+    return [sum_of((1, p[3], q[0]), (1, p[0], q[3]), (1, p[1], q[2]), (-1, p[2], q[1])),
+            sum_of((1, p[3], q[1]), (1, p[1], q[3]), (1, p[2], q[0]), (-1, p[0], q[2])),
+            sum_of((1, p[3], q[2]), (1, p[2], q[3]), (1, p[0], q[1]), (-1, p[1], q[0])),
+            sum_of((1, p[3], q[3]), (-1, p[0], q[0]), (-1, p[1], q[1]), (-1, p[2], q[2]))]
+
+
+def _attitude(o, e, guess):
+    """Return the quaternion of the rotation whose matrix has the rows e1, e2, e1 x e2.
+
+    Of its two signs the one nearer to a guess.
+
+    4 q q^T is linear in the matrix.
+    """
+    a, b = _directions(e)
+    c = [o.gather(a[i - 2], b[i - 1], o.minus(o.times(a[i - 1], b[i - 2]))) for i in range(3)]
+    one = o.everywhere(o.number(1.0))
+    together, apart = o.plus(b[1], c[2]), o.plus(b[1], o.minus(c[2]))
+    up, down = o.plus(one, a[0]), o.plus(one, o.minus(a[0]))
+    xy, xz, yz = o.plus(a[1], b[0]), o.plus(a[2], c[0]), o.plus(b[2], c[1])
+    xw, yw, zw = (
+        o.plus(c[1], o.minus(b[2])),
+        o.plus(a[2], o.minus(c[0])),
+        o.plus(b[0], o.minus(a[1])),
+    )
+    table = (
+        (o.plus(up, o.minus(together)), xy, xz, xw),
+        (xy, o.plus(down, apart), yz, yw),
+        (xz, yz, o.plus(down, o.minus(apart)), zw),
+        (xw, yw, zw, o.plus(up, together)),
+    )
+    found = [
+        o.gather(
+            line[0],
+            guess[0],
+            o.gather(line[1], guess[1], o.gather(line[2], guess[2], o.times(line[3], guess[3]))),
+        )
+        for line in table
+    ]
+    square = o.gather(
+        found[0],
+        found[0],
+        o.gather(found[1], found[1], o.gather(found[2], found[2], o.times(found[3], found[3]))),
+    )
+    scale = o.divided(one, o.root(square))
+    return [o.times(scale, component) for component in found]
+
+
+def _attitude_of(o, row, values, h):
+    return _attitude(o, values[:DIRECTIONS], _turned(o, row.q, row.angle(h)))
+
+
+FORM = Form(tuple(range(UNKNOWNS)), 1.0, _fill, _unit, _attitude_of)
+advance = compiled_lanes(step_of(FORM), 0)
+advance_with_drag = compiled_lanes(step_of(FORM._replace(fill=partial(_fill, dragged=True))), 0)
+between = compiled_lanes(between_of(FORM), 0)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Eight bodies at once that turn on a hinge, about the third axis of their frames.
+
+The unknowns are the direction e = (x, y, 0) of the world across the hinge, seen in the body, and
+the rate omega_3:
+
+    x' = y omega_3,    y' = -x omega_3,    omega_3' = constant + U_1 x + U_2 y + D omega_3
+
+so that x = cos(angle) and y = -sin(angle), by two products of two series for each order.
+"""
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.lanes import compiled_lanes
+from rigid_body_sim.integrators.marching.batch_lane import (
+    CONSTANT,
+    DRAG,
+    INVERSES,
+    OMEGA,
+    ORDER,
+    U,
+    Unknowns,
+)
+from rigid_body_sim.integrators.marching.batch_step import (
+    Form,
+    between_of,
+    half_turn,
+    restored,
+    square_of,
+    step_of,
+)
+from rigid_body_sim.numerics.rotations import rotate_back
+
+AXIS = 2    # the component of omega along the hinge
+X, Y, RATE = 0, 1, OMEGA + AXIS
+COUNTS = 4.0    # a term of the direction counts so many times: bodies err about as they do alone
+PULL, TORQUE, SLOWING = U + 3 * AXIS, CONSTANT + AXIS, DRAG + 3 * AXIS + AXIS
+
+
+@compiled
+def unknowns(q, omega):
+    """Return the Unknowns of an attitude and an angular velocity."""
+    x, y, _ = rotate_back(*q, 1.0, 0.0, 0.0)
+    return Unknowns((x, y, 0.0, 0.0, 0.0, 0.0), omega)
+
+
+def _fill(o, row):
+    """Fill the coefficients of orders 1 ... ORDER."""
+    def next_order(k, turns, constant):
+        to_x, to_y = turns
+        x, y, rate = row.coefficients(k, FORM.moving)
+        share = row.share(INVERSES, k)
+        change = row(TORQUE) if constant else o.none()
+        for factor, value in ((row(PULL), x), (row(PULL + 1), y), (row(SLOWING), rate)):
+            change = o.gather(factor, value, change)
+        for place, rate_of in ((X, to_x), (Y, o.minus(to_y)), (RATE, change)):
+            row.put_coefficient(o.times(share, rate_of), k, place)
+
+    def products(sums, e, rate):
+        (x, y), (to_x, to_y) = e, sums
+        return o.gather(y, rate, to_x), o.gather(x, rate, to_y)
+
+    def e_of(order):
+        return row.coefficients(order, (X, Y))
+
+    def rate_of(order):
+        [rate] = row.coefficients(order, (RATE,))
+        return rate
+
+    none = o.none(), o.none()
+    next_order(0, products(none, e_of(0), rate_of(0)), True)
+
+    def order(k, _):
+        def pair(i, sums):
+            return list(products(sums, e_of(i), rate_of(o.place(k, -1, i))))
+        sums = o.repeat(1, k, list(none), pair)
+        sums = products(sums, e_of(0), rate_of(k))
+        next_order(k, products(sums, e_of(k), rate_of(0)), False)
+        return []
+    o.repeat(1, ORDER, [], order)
+
+
+def _unit(o, values, lost):
+    """Return the unknowns with the direction of length 1, and what they lost."""
+    *e, rate = values
+    short = o.times(o.everywhere(o.number(-0.5)), square_of(o, e, o.everywhere(o.number(-1.0))))
+    kept = [restored(o, own, o.gather(short, own, gone), gone)
+            for own, gone in zip(e, lost, strict=False)]
+    return [*(value for value, _ in kept), rate], [*(gone for _, gone in kept), lost[-1]]
+
+
+def _attitude(o, row, values, h):
+    """Return the quaternion of the direction, of its two signs the one nearer to a guess.
+
+    The guess integrates the rate alone. 2 q q^T is linear in cosine and sine of the angle.
+    """
+    cosine, sine = values[X], o.minus(values[Y])
+    (turn,), scalar = half_turn(o, row.angle(h, (AXIS,)))
+    z, w = row.q[2:]
+    z, w = (o.gather(w, turn, o.times(z, scalar)),
+            o.gather(w, scalar, o.minus(o.times(z, turn))))
+    one = o.everywhere(o.number(1.0))
+    found = [o.gather(o.plus(one, o.minus(cosine)), z, o.times(sine, w)),
+             o.gather(o.plus(one, cosine), w, o.times(sine, z))]
+    scale = o.divided(one, o.root(square_of(o, found)))
+    return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
+
+
+FORM = Form((X, Y, RATE), COUNTS ** 2, _fill, _unit, _attitude)
+advance = compiled_lanes(step_of(FORM), 0)
+between = compiled_lanes(between_of(FORM), 0)

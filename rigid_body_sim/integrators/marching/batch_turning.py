@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Eight bodies at once by their quaternions, where all torques turn with the body.
+
+The unknowns are q, in the first four places of the attitude, and omega:
+
+    q' = q omega/2,    omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + D omega)_1
+
+and cyclically, where D is the matrix of drag. There are 15 products of two series for each order,
+as many as by directions (batch_directions.py), but nothing has to be found from them after the
+step.
+"""
+
+from functools import partial
+
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.lanes import compiled_lanes
+from rigid_body_sim.integrators.marching.batch_lane import (
+    CONSTANT,
+    DRAG,
+    EULER,
+    INVERSES,
+    OMEGA,
+    ORDER,
+    UNKNOWNS,
+    Unknowns,
+)
+from rigid_body_sim.integrators.marching.batch_step import (
+    Form,
+    between_of,
+    restored,
+    square_of,
+    step_of,
+)
+
+OF_Q, OF_OMEGA = range(4), range(OMEGA, UNKNOWNS)
+# q' is half the sum of what is added and what is subtracted: places in q, in omega
+X, Y, Z, W = OF_Q
+RATES = (((W, X), (Y, Z)), ((Z, Y),)), (((W, Y), (Z, X)), ((X, Z),)), \
+    (((W, Z), (X, Y)), ((Y, X),)), ((), ((X, X), (Y, Y), (Z, Z)))
+TERMS = [term for signs in RATES for terms in signs for term in terms]
+COUNTS = 8.0    # a term of q counts so many times: bodies err about as they do alone
+
+
+@compiled
+def unknowns(q, omega):
+    """Return the Unknowns of an attitude and an angular velocity."""
+    return Unknowns((*q, 0.0, 0.0), omega)
+
+
+def _products(o, sums, q, w, others):
+    """Return the 15 sums, those of q' first, with one more pair of orders.
+
+    Added are the products of q and w of one order with omega of the other. Each term has a sum of
+    its own: one that takes three products in turn would wait for each of them.
+    """
+    pairs = [*((q[a], others[b]) for a, b in TERMS),
+             *((w[(i + 1) % 3], others[(i + 2) % 3]) for i in range(3))]
+    return [o.gather(a, b, known) for (a, b), known in zip(pairs, sums, strict=True)]
+
+
+def _fill(o, row, dragged=False):
+    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
+    def q_of(order):
+        return row.coefficients(order, OF_Q)
+
+    def omega_of(order):
+        return row.coefficients(order, OF_OMEGA)
+
+    def next_order(k, sums, constant):
+        share = row.share(INVERSES, k)
+        half, terms = o.times(o.everywhere(o.number(0.5)), share), iter(sums)
+        for i, signs in enumerate(RATES):
+            added, subtracted = (_total(o, [next(terms) for _ in one]) for one in signs)
+            rate = o.minus(subtracted)
+            if added is not None:
+                rate = o.plus(added, rate)
+            row.put_coefficient(o.times(half, rate), k, i)
+        w = omega_of(k) if dragged else ()
+        for i, own in enumerate(terms):
+            rate = row(CONSTANT + i) if constant else o.none()
+            for j, rates in enumerate(w):
+                rate = o.gather(row(DRAG + 3 * i + j), rates, rate)
+            rate = o.gather(row(EULER + i), own, rate)
+            row.put_coefficient(o.times(share, rate), k, OMEGA + i)
+
+    none = [o.none()] * (len(TERMS) + 3)
+    first, first_rates = q_of(0), omega_of(0)
+    next_order(0, _products(o, none, first, first_rates, first_rates), True)
+
+    def order(k, _):
+        def pair(i, sums):
+            rest = o.place(k, -1, i)
+            return _products(o, sums, q_of(i), omega_of(i), omega_of(rest))
+        sums = o.repeat(1, k, none, pair)
+        newest = omega_of(k)
+        sums = _products(o, sums, q_of(0), omega_of(0), newest)
+        next_order(k, _products(o, sums, q_of(k), newest, omega_of(0)), False)
+        return []
+    o.repeat(1, ORDER, [], order)
+
+
+def _total(o, values):
+    """Return the sum of some values, None of none."""
+    total = None
+    for value in values:
+        total = value if total is None else o.plus(total, value)
+    return total
+
+
+def _unit(o, values, lost):
+    """Return the unknowns with q of length 1, and what they lost."""
+    values, lost = list(values), list(lost)
+    short = o.times(o.everywhere(o.number(-0.5)),
+                    square_of(o, values[:len(OF_Q)], o.everywhere(o.number(-1.0))))
+    for i in OF_Q:
+        values[i], lost[i] = restored(o, values[i], o.gather(short, values[i], lost[i]), lost[i])
+    return values, lost
+
+
+def _attitude(o, row, values, h):
+    return values[:len(OF_Q)]
+
+
+FORM = Form((*OF_Q, *OF_OMEGA), COUNTS ** 2, _fill, _unit, _attitude)
+advance = compiled_lanes(step_of(FORM), 0)
+advance_with_drag = compiled_lanes(step_of(FORM._replace(fill=partial(_fill, dragged=True))), 0)
+between = compiled_lanes(between_of(FORM), 0)
