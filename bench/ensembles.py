@@ -65,7 +65,7 @@ def stepped(case, goal):
         return max(angle_between(*q, *truth) for q, truth in zip(attitudes, exact, strict=True))
 
     def ours(method, accuracy):
-        chosen = choose(scene, method, accuracy, horizon=DURATION)
+        chosen = choose(scene, method, accuracy, horizon=DURATION, together=True)
         return lambda: ensemble(scene, starts, [DURATION], chosen)
 
     def error_of_ours(act):

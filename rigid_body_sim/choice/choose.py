@@ -6,6 +6,7 @@ was measured to meet the accuracy (measured.py), after trial runs on the scene i
 (settling.py).
 """
 
+import contextlib
 import functools
 import logging
 import math
@@ -19,7 +20,7 @@ from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.exact_forecast import of_exact
 from rigid_body_sim.choice.forecast import Forecast, missed
 from rigid_body_sim.compilation import jit
-from rigid_body_sim.errors import BadInput, nearest
+from rigid_body_sim.errors import BadInput, NotConverged, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
 from rigid_body_sim.integrators.protocols import FINEST, Solver
 from rigid_body_sim.integrators.solver import Stepped
@@ -245,7 +246,8 @@ def _inner_rates(scene):
     return rate, rate * (max(inertia.moments) / least)
 
 
-def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None):
+def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON, settled=None,
+           together=False):
     """Return the Choice for a scene.
 
     Parameters
@@ -261,6 +263,9 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
         s.
     settled : settling.Settled, optional
         An earlier choice by `auto`, which is taken again whatever the table says now.
+    together : bool
+        Whether many bodies are solved: `auto` takes a method that has them side by side if that
+        meets the accuracy, which the table of single bodies does not know.
 
     Raises
     ------
@@ -271,7 +276,7 @@ def choose(scene, integrator='auto', accuracy=1e-12, step=None, horizon=HORIZON,
     _say_what_is_slow()
     _check(integrator, accuracy, step, horizon)
     same = _Same(scene, scene.initial.vector.tobytes())
-    return _chosen(same, integrator, accuracy, step, horizon, settled)
+    return _chosen(same, integrator, accuracy, step, horizon, settled, together)
 
 
 class _Same:
@@ -290,7 +295,7 @@ class _Same:
 
 
 @functools.lru_cache(maxsize=KEPT)
-def _chosen(same, integrator, accuracy, step, horizon, settled):
+def _chosen(same, integrator, accuracy, step, horizon, settled, together):
     """Return the Choice for settings that have been checked.
 
     A Choice never changes: whoever runs the same scene again gets the same one.
@@ -312,8 +317,11 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
         stiff = _stiff(scene)
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         coarsest = ENDING if wobbles else math.inf
-        settled = settled or settling.settle(scene, fit, min(accuracy, coarsest), horizon,
-                                             coarsest=coarsest)
+        settle = functools.partial(settling.settle, scene, accuracy=min(accuracy, coarsest),
+                                   horizon=horizon, coarsest=coarsest)
+        settled = settled or settle(able=fit)
+        if together:
+            settled = _side_by_side(settled, settle, fit, accuracy)
         if closed and closed.expected_error <= (settled.expected_error or 0.0):    # None: untried
             return closed
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
@@ -330,6 +338,18 @@ def _chosen(same, integrator, accuracy, step, horizon, settled):
     else:
         prototype = Stepped(scene, method, tolerance, step, horizon=horizon, wanted=accuracy)
     return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, settled)
+
+
+def _side_by_side(settled, settle, fit, accuracy):
+    """Return the Settled choice of a method that takes bodies side by side, if one will do."""
+    side_by_side = [name for name in fit if METHODS[name].FAMILY.LANES]
+    if settled.method not in side_by_side and side_by_side:
+        with contextlib.suppress(NotConverged):    # also where none was measured on such scenes
+            found = settle(able=side_by_side)
+            # None: untried, as the table promises
+            if (found.expected_error or 0.0) <= max(accuracy, settled.expected_error or 0.0):
+                return found
+    return settled
 
 
 def _by_motion(scene, named, accuracy, horizon, settled):

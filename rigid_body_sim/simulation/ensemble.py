@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from rigid_body_sim.choice.choose import HORIZON, Choice, choose
 from rigid_body_sim.choice.rounding import of_starts
+from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.numerics.rotations import angles_between
@@ -185,8 +186,8 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     out = _result(shape, out, memory)
     # one method for all bodies, or one for each body where their scenes differ
     groups = [(integrator if isinstance(integrator, Choice) else
-               choose(one, integrator, accuracy, horizon=horizon), bodies)
-              for one, bodies in _alike(scenes, starts)]
+               choose(one, integrator, accuracy, horizon=horizon, together=len(bodies) >= LANES),
+               bodies) for one, bodies in _alike(scenes, starts)]
     if not isinstance(integrator, Choice):
         groups = [own for group in groups
                   for own in _of_own_starts(*group, starts, integrator, accuracy, horizon)]

@@ -27,6 +27,18 @@ from rigid_body_sim.simulation.simulation import Simulation
 REFERENCE = json.loads((pathlib.Path(__file__).resolve().parents[1] / 'data'
                         / 'choice.json').read_text())
 
+DAMPED_TOP = """
+scene: damped_top
+body:
+  mass: 1.0
+  inertia: [0.03, 0.022, 0.012]
+  inertia_about: origin
+  center_of_mass: [0.01, 0.005, 0.1]
+constraint: pivot
+effects: [drag: {angular: 0.002}, gravity: {g: 9.81}]
+initial: {euler_zyz: [0.2, 0.8, 0.3], angular_velocity: [3, -2, 40]}
+"""
+
 
 def scene_of(name):
     return parse_scene(choice_cases.text(name))
@@ -226,3 +238,18 @@ def test_a_body_at_rest_has_a_first_tolerance_to_try(tolerance):
     first = trial._grid(trial._likely(tolerance))
     assert trial._finest <= first <= max(trial._finest, 2.0 * tolerance)
     assert trial.tolerance_from(tolerance) >= first    # nothing errs
+
+
+@pytest.mark.without_numba
+def test_many_bodies_take_a_method_that_has_them_side_by_side_where_it_meets_the_accuracy():
+    """A top with drag goes by collocation to 1e-12; eight bodies at once by series are quicker."""
+    scene = parse_scene(DAMPED_TOP)
+    alone, together = (choose(scene, accuracy=1e-12, horizon=0.5, together=together)
+                       for together in (False, True))
+    assert (alone.method, together.method) == ('gauss16', 'taylor')
+    assert together.expected_error <= 1e-12
+    # one that would miss it is not taken
+    missed = settling.Settled('taylor', 1e-9, 1e-9, 0.0)
+    kept = choose_module._side_by_side(
+        alone.settled, lambda able: missed, ['gauss16', 'taylor'], 1e-12)
+    assert kept is alone.settled
