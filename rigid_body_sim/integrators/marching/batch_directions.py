@@ -26,7 +26,6 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     DIRECTIONS,
     DRAG,
     EULER,
-    INVERSES,
     OMEGA,
     ORDER,
     UNKNOWNS,
@@ -115,7 +114,7 @@ def _fill(o, row, dragged=False):
             for j in range(3) if dragged else ():
                 rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
             changes.append(o.gather(row(EULER + i), sums[GYROSCOPIC + i], rate))
-        share = row.share(INVERSES, k)
+        share = row.share(k)
         for i, change in enumerate(changes):
             row.put_coefficient(o.times(share, change), k, i)
 

@@ -14,7 +14,6 @@ from rigid_body_sim.compilation.lanes import compiled_lanes
 from rigid_body_sim.integrators.marching.batch_lane import (
     CONSTANT,
     DRAG,
-    INVERSES,
     OMEGA,
     ORDER,
     U,
@@ -48,7 +47,7 @@ def _fill(o, row):
     def next_order(k, turns, constant):
         to_x, to_y = turns
         x, y, rate = row.coefficients(k, FORM.moving)
-        share = row.share(INVERSES, k)
+        share = row.share(k)
         change = row(TORQUE) if constant else o.none()
         for factor, value in ((row(PULL), x), (row(PULL + 1), y), (row(SLOWING), rate)):
             change = o.gather(factor, value, change)

@@ -16,6 +16,7 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     END,
     FOLLOWING,
     FOUND,
+    INVERSES,
     LOST,
     OMEGA,
     ORDER,
@@ -86,9 +87,9 @@ class Rows:
         self.o.put(value, self._W, self.o.place(
             LANES * (SERIES + UNKNOWNS + unknown), LANES * UNKNOWNS, order))
 
-    def share(self, inverses, order):
-        """Return 1/(order + 1)."""
-        return self.o.load(self._W, self.o.place(LANES * inverses, LANES, order))
+    def share(self, order):
+        """Return 1/(order + 1), which makes the next coefficient of a rate's."""
+        return self.o.load(self._W, self.o.place(LANES * INVERSES, LANES, order))
 
     @property
     def q(self):

@@ -18,7 +18,6 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     CONSTANT,
     DRAG,
     EULER,
-    INVERSES,
     OMEGA,
     ORDER,
     UNKNOWNS,
@@ -67,7 +66,7 @@ def _fill(o, row, dragged=False):
         return row.coefficients(order, OF_OMEGA)
 
     def next_order(k, sums, constant):
-        share = row.share(INVERSES, k)
+        share = row.share(k)
         half, terms = o.times(o.everywhere(o.number(0.5)), share), iter(sums)
         for i, signs in enumerate(RATES):
             added, subtracted = (_total(o, [next(terms) for _ in one]) for one in signs)

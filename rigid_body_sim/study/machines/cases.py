@@ -51,6 +51,8 @@ WAYS = ('one by one', 'in slices', 'foreseen', 'backwards')
 ENSEMBLES = (('heavy_top', 'exact'), ('skew_top', 'taylor'), ('heavy_top', 'dop8'))
 BODIES, THREADS = (3, 8, 17, 40), (1, 2, 5)
 """Scenes and methods that run many bodies, the numbers of bodies and of threads."""
+SIDE_BY_SIDE = ('thrown_with_drag', 'skew_hinge_damped')
+"""Scenes that taylor follows by other unknowns where it has eight bodies at once."""
 
 
 class Case(typing.NamedTuple):
@@ -223,4 +225,7 @@ def cases():
                 run = functools.partial(many, name, method, bodies, threads)
                 label = f'{bodies} of {name} by {method}: {threads} threads'
                 table[label] = Case(name, run, None if label == first else first)
+    for name in SIDE_BY_SIDE:
+        run = functools.partial(many, name, 'taylor', BODIES[0], THREADS[0])
+        table[f'{BODIES[0]} of {name} by taylor: {THREADS[0]} threads'] = Case(name, run)
     return table
