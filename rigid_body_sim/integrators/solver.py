@@ -27,8 +27,11 @@ from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
 from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
+from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE
 from rigid_body_sim.mechanics.events import Watcher, watches
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.parameters import parameters
+from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.mechanics.quadrature import Actors, Quadrature
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -99,6 +102,7 @@ class Stepped:
         self._departs = step is None and applies(scene, wrench)
         self._may_wind = scene.wound.constraint != scene.constraint
         self._carried = scene.frame.path is not None
+        self._may_leave_doubles = self._carried or step is not None
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -139,6 +143,10 @@ class Stepped:
         return started
 
     @functools.cached_property
+    def _mechanics(self):
+        return parameters(self.scene)
+
+    @functools.cached_property
     def _wound(self):
         """The Stepped of the scene with a kink at the ends of a hinge's angle."""
         method = self.method if self.method.FAMILY.KINKS else GENERAL
@@ -151,7 +159,7 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        alone = self._departs or self._may_wind or self._carried
+        alone = self._departs or self._may_wind or self._may_leave_doubles
         found = None if alone else self._bound.runner(self)
         if found is None:
             return self._run
@@ -242,10 +250,18 @@ class Stepped:
         on_all_cores(side_by_side, len(starts), 8 * LANES)
 
     def _check(self, rows):
-        """Raise if a pivot that moves has left what doubles hold: nothing is solved for it."""
-        if self._carried and not np.isfinite(rows).all():
-            beyond = ~np.isfinite(rows).all(axis=1)
-            raise lost(self.method, self.scene, rows[beyond, TIME].min())
+        """Raise if a state, or its energy, is beyond what doubles hold.
+
+        So may be a pivot that moves, for which nothing is solved, and a body that is followed in
+        steps of one size, which no error makes smaller.
+        """
+        if not self._may_leave_doubles:
+            return
+        diagnoses = np.empty((len(rows), DIAGNOSIS_SIZE))
+        energies(self.scene).diagnose_many(self._mechanics, rows, diagnoses)
+        finite = np.isfinite(rows).all(axis=1) & np.isfinite(diagnoses).all(axis=1)
+        if not finite.all():
+            raise lost(self.method, self.scene, rows[~finite, TIME].min())
 
     def _within(self, first, last):
         """Raise unless the times from the first to the last can be reached."""

@@ -10,7 +10,6 @@
     print(simulation.states([10.0, 20.0, 5.0]).orientation)
 """
 
-import contextlib
 import copy
 import dataclasses
 import functools
@@ -412,7 +411,7 @@ class Simulation:
             self.tick, self._spans, self._commands = tick, spans, commands
             self._arrive()
             if isinstance(error, NotConverged):
-                self._go_to_last_tick(error)
+                raise self._go_to_last_tick(error) from None
             raise
 
     def advance_through(self, ticks: int) -> States:
@@ -433,41 +432,46 @@ class Simulation:
         try:
             states = self.states(self.time_at(np.arange(first, first + ticks)))
         except NotConverged as error:
-            self._go_to_last_tick(error)
+            found = self._go_to_last_tick(error)
             if self.tick < first:
-                raise
+                raise found from None
             return self.states(self.time_at(np.arange(first, self.tick + 1)))
         self.advance(ticks)
         return states
 
     def _go_to_last_tick(self, error):
-        """Go to the last tick before a NotConverged, and note the events up to the end."""
+        """Go to the last tick before a NotConverged, and note the events up to the end.
+
+        Return the NotConverged of the tick after it, or the one given where nothing was asked of
+        that tick.
+        """
         before, reached, beyond = self.time, self.tick, self._tick_after(error.time)
         tick = beyond - 1    # the first guess: rounding, or a march that overshot, may miss it
         while reached + 1 < beyond:
-            if self._reaches(tick):
+            refused = self._go_if_reached(tick)
+            if refused is None:
                 reached = tick
             else:
-                beyond = tick
+                beyond, error = tick, refused
             tick = (reached + beyond) // 2
         self._arrive()
-        if not self.watching or self._told_end:
-            return
-        self._note_events(self._spans, before, self.time)
-        if isinstance(error, Ended):
-            self._note_events(self._spans_until(error.time), self.time, math.inf)
-            self._told_end = True
+        if self.watching and not self._told_end:
+            self._note_events(self._spans, before, self.time)
+            if isinstance(error, Ended):
+                self._note_events(self._spans_until(error.time), self.time, math.inf)
+                self._told_end = True
+        return error
 
-    def _reaches(self, tick):
-        """Go to a later tick that has a finite state, or stay and return False."""
+    def _go_if_reached(self, tick):
+        """Go to a later tick, or stay and return the NotConverged where it cannot be reached."""
         kept = self.tick, self._spans, self._commands
         self.tick, self._commands = tick, None
-        with contextlib.suppress(NotConverged):
+        try:
             self._arrive()
-            if np.isfinite(self._vector).all():
-                return True
-        self.tick, self._spans, self._commands = kept
-        return False
+        except NotConverged as error:
+            self.tick, self._spans, self._commands = kept
+            return error
+        return None
 
     def _tick_after(self, time):
         """Return the first tick after the present one that is after a time (s) or None."""

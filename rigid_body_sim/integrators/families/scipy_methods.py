@@ -107,18 +107,15 @@ class _Course:
         )
 
     def _advance(self):
-        reached = float(self._solver.t)
+        # the last good time, however often the solver has gone on from a state that is not finite
+        reached = float(self._reached[-1]) if self._reached else self._begin
+        where = f'{self._method.NAME} on {self._scene.name}: at t = {reached!r} s'
         try:
             message = self._solver.step()
         except ValueError:    # SciPy takes no Jacobian apart that is not finite
-            raise NotConverged(
-                f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s '
-                'the rates are not finite', reached) from None
+            raise NotConverged(f'{where} the rates are not finite', reached) from None
         if self._solver.status == 'failed' or not np.isfinite(self._solver.y).all():
-            raise NotConverged(
-                f'{self._method.NAME} on {self._scene.name}: at t = {float(self._solver.t)!r} s: '
-                f'{message or "the state is no longer finite"}', reached
-            )
+            raise NotConverged(f'{where}: {message or "the state is no longer finite"}', reached)
         self._reached.append(self._solver.t)
         self._steps.append(self._solver.dense_output())
         self._parameters.append(self._p)
