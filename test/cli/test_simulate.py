@@ -349,14 +349,18 @@ def test_a_run_that_ends_keeps_every_tick_before_and_the_event(
 
 
 @pytest.mark.without_numba
-def test_a_run_whose_state_ceases_to_be_finite_keeps_every_tick_before(tmp_path, capsys):
-    (tmp_path / 'root.yaml').write_text(
-        'scene: root\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
-        "effects: [torque: {value: ['sqrt(0.0305 - t)', 0, 0]}]\n"
-        'initial: {angular_velocity: [1, 2, 3]}\n')
+@pytest.mark.parametrize(('effect', 'line', 'count'), [
+    ("torque: {value: ['sqrt(0.0305 - t)', 0, 0]}", 'dop8 on fault: at t = 0.0304', 31),
+    ('strike: {impulse: [1e75, 0, 0], point: [0, 1e75, 0], time: 0.0205}',
+     'fault: strike: at 0.0205 s it would do a work of', 21)])
+def test_a_run_that_cannot_go_on_keeps_every_tick_before(tmp_path, capsys, effect, line, count):
+    """A state that is no longer finite, a strike that the body cannot take."""
+    (tmp_path / 'fault.yaml').write_text(
+        'scene: fault\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+        f'effects: [{effect}]\ninitial: {{angular_velocity: [1, 2, 3]}}\n')
     run = str(tmp_path / 'run')
-    assert main(['--scene', str(tmp_path / 'root.yaml'), '--duration', '1', '--accuracy', '1e-6',
+    assert main(['--scene', str(tmp_path / 'fault.yaml'), '--duration', '1', '--accuracy', '1e-6',
                  '--integrator', 'dop8', '--output', run]) == 1
-    assert capsys.readouterr().err.startswith('dop8 on root: at t = 0.0304')
-    assert Recording(run).topics['/pose'].count == 31
+    assert capsys.readouterr().err.startswith(line)
+    assert Recording(run).topics['/pose'].count == count
     assert resimulate([run]) == 0

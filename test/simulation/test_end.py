@@ -36,7 +36,15 @@ effects: [gravity: {g: 9.81}, sliding_friction: {mu: 2.5},
           strike: {impulse: [-8, 0, 0], time: 0.01}]
 initial: {euler_zyz: [0, 0.5, 0], velocity: [4.0, 0, 0]}
 """
-ENDS = {'rolling': (FAST, 60, 0.0606186), 'struck': (ROD, 9, 0.01)}
+# more work than a double holds
+BAT = """
+scene: bat
+body: {mass: 1.0, inertia: [0.01, 0.012, 0.02]}
+constraint: free
+effects: [torque: {value: [0, 0, '0.01*cos(wx)']}, strike: {impulse: [0, 1e75, 0], point: [1e75, 0, 0], time: 0.0125}]
+initial: {angular_velocity: [1, 2, 3]}
+"""
+ENDS = {'rolling': (FAST, 60, 0.0606186), 'struck': (ROD, 9, 0.01), 'refused': (BAT, 12, 0.0125)}
 """Scene, last tick at 1 kHz, time of the end (s, at 1e-9)."""
 both = pytest.mark.parametrize(('text', 'last', 'end'), ENDS.values(), ids=ENDS)
 
