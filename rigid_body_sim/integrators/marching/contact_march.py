@@ -332,7 +332,10 @@ def at(p, w, phase, sizes, meta, cursor, time, y):
 
     `cursor`, shape (2, POINT), holds the ends of the step in which the last answer lay.
     """
-    if not (meta[PLACED] >= 0.0 and cursor[0, TIME] <= time < cursor[1, TIME]):
+    # the last step holds its end, too
+    is_last = meta[PLACED] + 1.0 >= meta[STEPS]
+    if not (meta[PLACED] >= 0.0 and cursor[0, TIME] <= time and (
+            time < cursor[1, TIME] or is_last)):
         low, high = 0, int(meta[STORED]) - 1
         while low < high:
             middle = (low + high + 1) // 2
