@@ -293,9 +293,10 @@ class Session:
         self.simulation.forget_past()
         if self._commands.waiting:
             self._take_effect(tick, self._commands.collect())
-        if self._release_tick is not None and tick >= self._release_tick:
+        due = self._release_tick is not None and tick >= self._release_tick
+        # a release after which no motion follows is refused, and tried again at the next tick
+        if due and self._take_effect(tick, LET_GO):
             self._release_tick = None
-            self._take_effect(tick, LET_GO)
             self.event(
                 WARN,
                 'command timed out',
@@ -303,6 +304,7 @@ class Session:
             )
 
     def _take_effect(self, tick, rows):
+        """Apply commands, and report those that are refused; return whether any was taken."""
         refused = self.simulation.command(rows)
         for refusal in refused:
             remedy = '' if refusal.reason in WITH_EXAMPLE else refusal.error.remedy
@@ -315,7 +317,7 @@ class Session:
         if refused:
             rows = np.delete(rows, [refusal.place for refusal in refused], axis=0)
         if not len(rows):
-            return
+            return False
         kinds = set(rows[:, KIND].tolist())
         if HOLD in kinds:
             timeout = self.timeline.ticks_in(self.command_timeout)
@@ -323,6 +325,7 @@ class Session:
         self._commands.applied += len(rows) - (RELEASE in kinds)
         self._disturbed()
         self._journal.commands(tick, self.stamp, rows)
+        return True
 
     def _disturbed(self):
         """Start a new comparison with theory, and wait for a while before prefetching again."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.compilation.layout import Vector, layout
-from rigid_body_sim.errors import BadInput
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.mechanics.impulse import RESPONSE_SIZE, WORK, apply_impulse
 from rigid_body_sim.mechanics.parameters import SCENE
 from rigid_body_sim.numerics.pair_vectors import difference, less, turned, with_low
@@ -113,6 +113,10 @@ class Given(NamedTuple):
     def at(cls, vector: np.ndarray) -> 'Given':
         """Return the Given of no commands at a state (14,)."""
         return cls(vector.copy(), np.zeros(SUMS_SIZE), vector.copy(), np.zeros(RESPONSE_SIZE))
+
+    def copy(self) -> 'Given':
+        """Return a Given with arrays of its own."""
+        return Given(*(part.copy() for part in self))
 
     @property
     def any_impulse(self) -> bool:
@@ -248,6 +252,13 @@ def scene_refuses(scene_name: str, count: int) -> list[Refusal]:
         'its key `commands` says so; set commands: accept',
     )
     return [Refusal(place, SCENE_REFUSES, error) for place in range(count)]
+
+
+def no_motion_follows(row: np.ndarray, error: NotConverged) -> Refusal:
+    """Return the Refusal of one command at whose own tick the motion would end."""
+    problem = BadInput(NAMES[int(row[KIND])], f'no motion follows it: {error}',
+                       'another command, or this one at another time')
+    return Refusal(0, REASONS[NOT_SOLVABLE], problem)
 
 
 def refusals(

@@ -32,7 +32,13 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Overrides, Scene, changed_scene, load_scene
 from rigid_body_sim.scene.state import STATE_SIZE, TIME, State, States
-from rigid_body_sim.simulation.admission import Given, admit, refusals, scene_refuses
+from rigid_body_sim.simulation.admission import (
+    Given,
+    admit,
+    no_motion_follows,
+    refusals,
+    scene_refuses,
+)
 from rigid_body_sim.simulation.checks import (
     TIMES,
     doubles,
@@ -596,7 +602,8 @@ class Simulation:
         ------
         BadInput
             Non-finite numbers, an unknown frame, a scene that refuses commands, a torque about an
-            axis of zero moment.
+            axis of zero moment, a command after which no motion follows (the run would end at the
+            present tick, as in Painleve's paradox).
         """
         self._command_one(row_of(IMPULSE, force, torque, frame))
 
@@ -612,7 +619,7 @@ class Simulation:
         self._command_one(row_of(HOLD, force, torque, frame))
 
     def release(self) -> None:
-        """Release the held wrench at the present tick."""
+        """Release the held wrench at the present tick; the same errors as for :meth:`impulse`."""
         self.command(LET_GO)
 
     def _command_one(self, row):
@@ -633,7 +640,7 @@ class Simulation:
         -------
         list of admission.Refusal
             The commands that are not taken, for the same reasons as in :meth:`impulse`; they have
-            no effect.
+            no effect. If no motion follows all of them together, they are taken one by one.
         """
         rows = np.ascontiguousarray(rows, dtype=float)
         if rows.ndim != 2 or rows.shape[1] != WIDTH:
@@ -646,12 +653,18 @@ class Simulation:
             return scene_refuses(self.scene.name, len(rows))
         if self._commands is None:
             self._commands = _Commands(len(self._spans), self.wrench, Given.at(self.vector))
-        given = self._commands.given
+        commands = self._commands
+        given = commands.given.copy()
         verdicts, amounts = np.empty(len(rows), np.int64), np.empty(len(rows))
         last, refused = admit(self._mechanics, self.rate, rows, *given, verdicts, amounts)
-        if last >= 0:
-            self._commands = self._commands._replace(wrench=wrench_of(rows[last]))
-        self._settle()
+        wrench = wrench_of(rows[last]) if last >= 0 else commands.wrench
+        try:
+            self._settle(commands._replace(wrench=wrench, given=given))
+        except NotConverged as error:
+            if len(rows) == 1:
+                return [no_motion_follows(rows[0], error)]
+            return [refusal._replace(place=place) for place, row in enumerate(rows)
+                    for refusal in self.command(row[np.newaxis])]
         return refusals(verdicts, amounts, rows, given.start) if refused else []
 
     @property
@@ -755,17 +768,16 @@ class Simulation:
         """Return the spans up to a time, with the scene's strikes on the way."""
         return self._strikes.follow(self._spans, time, self.choice)
 
-    def _settle(self):
-        """Begin a new span at the present tick, or none where the commands of the tick cancel."""
-        commands, time = self._commands, self.time
-        kept, given = self._spans[: commands.base], commands.given
+    def _settle(self, commands):
+        """Begin a new span at the present tick, or none where the commands of the tick cancel.
+
+        Where no motion follows the commands it raises NotConverged, and all stays as it was.
+        """
+        time, before, given = self.time, self._spans, commands.given
+        kept = before[: commands.base]
         last = kept[-1]
-        if self._told_end:    # an end that was told may not come any more
-            self._told_end = False
-            self.events[:] = [event for event in self.events if event.time <= time]
-        if self.departed == time:
-            self.departed = None    # the commands of the tick may cancel
-        if given.any_impulse or commands.wrench != last.wrench:
+        acts = given.any_impulse or commands.wrench != last.wrench
+        if acts:
             entries = last.given + last.solver.entries(time)
             if given.any_impulse:
                 impulse.add_entries(given.response, entries)
@@ -773,9 +785,21 @@ class Simulation:
                 *kept,
                 self._span(time, given.after.copy(), commands.wrench, last.strikes, entries),
             ]
-            self.departed = time if self.departed is None else self.departed
         self._spans = kept
-        self._arrive()
+        try:
+            self._arrive()
+        except NotConverged:
+            self._spans = before
+            self._arrive()
+            raise
+        self._commands = commands
+        if self._told_end:    # an end that was told may not come any more
+            self._told_end = False
+            self.events[:] = [event for event in self.events if event.time <= time]
+        if self.departed == time:
+            self.departed = None    # the commands of the tick may cancel
+        if acts and self.departed is None:
+            self.departed = time
 
     def __repr__(self):
         return (

@@ -8,13 +8,18 @@ import types
 import numpy as np
 import pytest
 
+from rigid_body_sim.analysis.resimulate import main as resimulate
 from rigid_body_sim.errors import BadInput, Ended, NotConverged
 from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
 from rigid_body_sim.node.journal import NoJournal
 from rigid_body_sim.node.rehearsal import _Nowhere, _Queue, rehearse
 from rigid_body_sim.realtime.session import Session
+from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.admission import no_motion_follows
+from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, ZERO, row_of
 from rigid_body_sim.simulation.simulation import Simulation
+from rigid_body_sim.view.runner import Runner
 
 pytestmark = pytest.mark.without_numba
 
@@ -41,7 +46,8 @@ BAT = """
 scene: bat
 body: {mass: 1.0, inertia: [0.01, 0.012, 0.02]}
 constraint: free
-effects: [torque: {value: [0, 0, '0.01*cos(wx)']}, strike: {impulse: [0, 1e75, 0], point: [1e75, 0, 0], time: 0.0125}]
+effects: [torque: {value: [0, 0, '0.01*cos(wx)']},
+          strike: {impulse: [0, 1e75, 0], point: [1e75, 0, 0], time: 0.0125}]
 initial: {angular_velocity: [1, 2, 3]}
 """
 ENDS = {'rolling': (FAST, 60, 0.0606186), 'struck': (ROD, 9, 0.01), 'refused': (BAT, 12, 0.0125)}
@@ -147,6 +153,60 @@ def test_a_command_before_the_end_voids_it_and_a_reset_tells_it_anew():
     assert told(one) == [('end', 62 + 60)]
 
 
+UNSTRUCK = ROD.replace(',\n          strike: {impulse: [-8, 0, 0], time: 0.01}', '')
+HARD, SOFT = (row_of(IMPULSE, force, ZERO, 'world') for force in ([-8, 0, 0], [-0.5, 0, 0]))
+
+
+def test_a_command_after_which_no_motion_follows_is_refused_and_leaves_no_trace():
+    one, softly, other = (simulation(UNSTRUCK) for _ in range(3))
+    for each in one, softly, other:
+        each.advance(10)
+    with pytest.raises(BadInput, match=r'impulse: no motion follows it: .*paradox at t = 0\.01 s'):
+        one.impulse(force=[-8, 0, 0])
+    [refusal] = softly.command(np.vstack([SOFT, HARD]))
+    assert (refusal.place, refusal.reason) == (1, 'the body cannot take it')
+    assert softly.state.velocity[0] < one.state.velocity[0]
+    softly.command(row_of(IMPULSE, [0.5, 0, 0], ZERO, 'world'))    # cancels the one taken
+    for each in one, softly, other:
+        each.advance(10)
+    for each in one, softly:
+        assert each.vector.tobytes() == other.vector.tobytes()
+        assert (each.ledger(), each.events, each.departed) == (other.ledger(), [], None)
+
+
+def test_a_hold_after_which_no_motion_follows_leaves_the_one_before():
+    one = simulation(FAST)
+    one.advance(60)
+    one.hold(force=[0.0, 0.0, -50.0])    # presses it on the plane
+    one.advance(5)
+    held, before = one.wrench, one.vector.tobytes()
+    with pytest.raises(BadInput, match=r'wrench: no motion follows it: .*a plane that pulls'):
+        one.hold(force=[0.0, 0.0, 1.0])
+    assert (one.wrench, one.vector.tobytes()) == (held, before)
+    one.release()
+    assert not one.wrench
+
+
+def test_a_refused_command_is_not_in_the_recording_which_runs_again_to_the_bit(tmp_path, capsys):
+    sent, run = [], tmp_path / 'run'
+    pipe = types.SimpleNamespace(send=sent.append, poll=lambda *_: False)
+    settings = {'rate': 1000.0, 'integrator': 'dop8', 'accuracy': 1e-9}
+    one = Runner(pipe, settings, str(run))
+    one.told('scene', UNSTRUCK)
+    for rows in HARD, SOFT:
+        one._advance(0.005)
+        one.told('command', rows)
+    one._advance(0.005)
+    one.close()
+    [line] = [line for name, line in sent if name == 'refused']
+    assert line.startswith('impulse: no motion follows it')
+    with Recording(run) as recording:
+        [entry] = [one for one in recording.journal() if one['kind'] == 'commands']
+    assert [row['force'] for row in entry['commands']] == [[-0.5, 0, 0]]
+    assert resimulate([str(run)]) == 0
+    assert 'identical' in capsys.readouterr().out
+
+
 def test_without_watching_the_run_ends_at_the_same_tick_without_an_event():
     one = simulation(FAST)
     one.watching = False
@@ -207,18 +267,42 @@ class Told(_Nowhere):
         return super().event(level, name, message, values)
 
 
-@both
-def test_the_node_publishes_every_tick_before_the_end_and_the_event(text, last, end):
-    one = simulation(text)
+def session_of(one, timeout=0.0):
+    """Return a Session that has begun, and its publishers."""
     messages = scene_messages(chosen(()), one.scene, Frames())
     rehearse(one, messages)    # ended the node with a traceback
     publishing = Told(messages)
-    settings = types.SimpleNamespace(command_timeout=0.0, duration=0.0, display_rate=30.0)
+    settings = types.SimpleNamespace(command_timeout=timeout, duration=0.0, display_rate=30.0)
     session = Session(one, _Queue(), publishing, NoJournal(), settings, lambda: 0)
     session.begin()
+    return session, publishing
+
+
+@both
+def test_the_node_publishes_every_tick_before_the_end_and_the_event(text, last, end):
+    session, publishing = session_of(simulation(text))
     for _ in range(last + 1):
         session.run_tick(True)
     with pytest.raises(Ended):
         session.run_tick(True)
     assert (session.next_tick, publishing.ticks) == (last + 1, last + 1)
     assert publishing.events == [('end', last, last + 1)]
+
+
+def test_a_release_that_is_refused_when_a_wrench_times_out_is_tried_again(monkeypatch):
+    one = simulation(BAT)
+    session, publishing = session_of(one, timeout=0.003)
+    session._commands.put(row_of(HOLD, [0.1, 0, 0], ZERO, 'world'))
+    command = one.command
+
+    def refuse_until_tick_5(rows):
+        if rows is LET_GO and one.tick < 5:
+            return [no_motion_follows(rows[0], Ended('as a test has it'))]
+        return command(rows)
+    monkeypatch.setattr(one, 'command', refuse_until_tick_5)
+    wrenches = []
+    for _ in range(7):
+        session.run_tick(True)
+        wrenches.append(bool(one.wrench))
+    assert wrenches == [True] * 5 + [False] * 2
+    assert publishing.events == [('command timed out', 5, 5)]
