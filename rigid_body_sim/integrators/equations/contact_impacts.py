@@ -7,7 +7,7 @@ Symbols: mechanics/contact/laws.py; the views are in contact_views.py.
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.layout import Pair, layout
+from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.equations.contact_views import LEDGER, UNKNOWNS
 from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.laws import impulse
@@ -39,6 +39,26 @@ class Impact(NamedTuple):
     impulse: float
 
 
+class Rebound(NamedTuple):
+    """What an impact does to the point that meets the plane.
+
+    Attributes
+    ----------
+    restitution : float
+    impulse : Vector
+        N s, axes of the plane.
+    after : Vector
+        Velocity after the impact, m/s.
+    loss : float
+        Energy that it takes, J.
+    """
+
+    restitution: float
+    impulse: Vector
+    after: Vector
+    loss: float
+
+
 IMPACT = layout(Impact)
 load_contact, load_unknowns = CONTACT.load, UNKNOWNS.load
 load_impact, store_impact = IMPACT.load, IMPACT.store
@@ -55,28 +75,34 @@ def velocity_of_lowest(p, y):
 
 
 @compiled
-def loss_of(G, before, restitution, mu):
-    """Return the energy that an impact takes, J; Newton's law with friction may create some."""
+def rebound(G, before, restitution, mu):
+    """Return the Rebound by Newton's law; with friction it may create energy.
+
+    The arguments are those of :func:`mechanics.contact.laws.impulse`.
+    """
     given = impulse(G, before, restitution, mu)
-    return -0.5 * dot(given, plus(before, plus(before, apply(G, given))))
+    after = plus(before, apply(G, given))
+    loss = -0.5 * dot(given, plus(before, after))
+    return Rebound(restitution, given, after, loss)
 
 
 @compiled
 def bearable(G, before, restitution, mu):
-    """Return the largest restitution, up to the one given, with which an impact creates no energy.
+    """Return the Rebound of the largest restitution, up to the one given, that creates no energy.
 
-    The arguments are those of :func:`mechanics.contact.laws.impulse`.
+    The arguments are those of :func:`rebound`.
     """
-    if loss_of(G, before, restitution, mu) >= 0.0:
-        return restitution
+    found = rebound(G, before, restitution, mu)
+    if found.loss >= 0.0:
+        return found
     low, high = 0.0, restitution
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if loss_of(G, before, middle, mu) >= 0.0:
+        if rebound(G, before, middle, mu).loss >= 0.0:
             low = middle
         else:
             high = middle
-    return low
+    return rebound(G, before, low, mu)
 
 
 @compiled
@@ -96,10 +122,7 @@ def collide(p, y, restitution, out):
     at = posture(c, now.q, now.omega)
     before = plus(now.u, apply(at.axes, at.carried))
     G = response(c.mass, c.inverse, at.axes, at.r, (0.0, 0.0, 0.0))
-    e = bearable(G, before, restitution, c.mu)
-    given = impulse(G, before, e, c.mu)
-    after = plus(before, apply(G, given))
-    loss = -0.5 * dot(given, plus(before, after))
+    e, given, after, loss = bearable(G, before, restitution, c.mu)
     normal = -e * before[2]
     turn = cross(at.r, rotate_back(*now.q, *given))
     store_omega(y, plus(now.omega, apply(c.inverse, turn)))
