@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events of a span: each is reported once, by the call that reaches it, even if found early."""
 
+import pytest
+
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.simulation.spans import Span, events_between
 
 
@@ -47,3 +51,36 @@ def test_events_of_a_motion_come_from_the_span_that_holds_then():
     found = list(events_between([first, second], 2.0, 6.0, 0.1))
     assert times(found) == [3.0, 4.0, 5.0, 6.0]
     assert first.solver.asked == [(2.0, 4.5, 0.1)] and second.solver.asked == [(4.5, 6.0, 0.1)]
+
+
+SLIDES = """
+scene: slides
+body: {mass: 1.0, shape: {solid_sphere: {radius: 0.05}}}
+constraint: table
+effects: [sliding_friction: {mu: 0.2, g: 9.81}]
+initial: {velocity: [1.0, 0.2, 0], angular_velocity: [0, 0, 3]}
+"""
+BOUNCES = """
+scene: bounces
+body: {mass: 1.0, inertia: [0.001, 0.001, 0.001], surface: {sphere: {radius: 0.05}}}
+constraint: {table: {restitution: 0.5}}
+effects: [gravity: {g: 9.81}]
+initial: {position: [0, 0, 1.05]}
+"""
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('text', 'ticks'), [(SLIDES, [16]), (BOUNCES, [120, 128])])
+def test_an_event_at_the_very_end_of_a_look_is_not_lost(text, ticks):
+    """The time of an event is that since the span began, and rounds where that is not 0."""
+    def later(tick):
+        one = Simulation(parse_scene(text), 'dop8', 1e-6)
+        one.advance(tick)
+        one.hold(force=[0.1, 0.05, 0.01])
+        return one._spans[-1]
+
+    for tick in ticks:
+        for time in times(later(tick).solver.events(0.001 * tick, 1.8))[:8]:
+            one = later(tick)
+            found = one.events(one.time, time, 1e-3) + one.events(time, time + 0.01, 1e-3)
+            assert times(found).count(time) == 1

@@ -546,8 +546,8 @@ class PlaneCourse:
 
         The `end` of a course that ends where it begins is after its start.
         """
-        with contextlib.suppress(Ended):
-            self.reach(until - self._begin)
+        with contextlib.suppress(Ended):    # as far as what is rounded to `until`
+            self.reach(math.nextafter(until, math.inf) - self._begin)
         if not self._phases and after == self._begin:
             return self._events[-1:]
         return [event for event in self._events if after < event[0] <= until]

@@ -151,7 +151,8 @@ class TableCourse:
 
         The events are: rolling began, sliding began.
         """
-        self._reach(until - self._begin)
+        # as far as what is rounded to `until`
+        self._reach(math.nextafter(until, math.inf) - self._begin)
         names = {CREEPING: 'sliding began', ROLLING: 'rolling began'}
         changes = [
             (self._begin + phase.begin, names[phase.mode], {})
