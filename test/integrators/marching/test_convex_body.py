@@ -518,6 +518,31 @@ def test_patch_without_a_finite_friction_is_refused():
 # -- limits -----------------------------------------------------------------------------------
 
 
+@pytest.mark.without_numba
+@pytest.mark.parametrize('effects', [
+    'sliding_friction: {mu: .inf}', 'sliding_friction: {mu: 0.9}, rolling_friction: {dry: 0.1}'])
+def test_centre_of_mass_outside_the_surface_swings_as_the_energy_says(effects):
+    """A sphere whose centre of mass is below the plane is a pendulum, which friction stops."""
+    c, R, inertia, start = 0.15, 0.1, 0.005, 0.5
+    body = (f'{{mass: 1.0, inertia: [0.004, {inertia}, 0.006], center_of_mass: [0, 0, {-c}], '
+            f'surface: {{sphere: {{radius: {R}}}}}}}')
+    sim = simulation(body, effects, f'{{euler_zyz: [0, {start}, 0]}}', accuracy=1e-9)
+    assert sim.state.position[2] == pytest.approx(R, abs=1e-15)
+    if 'dry' in effects:
+        sim.advance(1500)
+        assert [event.name for event in sim.events] == ['rest']
+        assert balanced(sim)
+        return
+    states = sim.states(np.linspace(0.0, 2.0, 21))
+    cos = np.array([body_axis_3 for *_, body_axis_3 in normals(states)])
+    about_contact = inertia + R * R + c * c - 2.0 * R * c * cos
+    rate = states.angular_velocity[:, 1]
+    # measured 2.3e-14 of 0.18 J
+    assert about_contact * rate**2 / 2.0 == pytest.approx(
+        G * c * (cos - math.cos(start)), abs=1e-12)
+    assert np.ptp(np.sign(rate)) == 2.0
+
+
 def test_disk_almost_flat_rolls_without_friction():
     R, a = 0.5, 1e-8
     spin = math.sqrt(4.0 * G / (R * a)) * a
