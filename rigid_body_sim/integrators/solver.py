@@ -40,6 +40,7 @@ from rigid_body_sim.scene.winding import may_reach_ends
 
 ULP = float(np.finfo(float).eps)
 LEAST = 1e-300          # keeps a quotient finite
+MODEST = 1e50           # numbers of a state: up to there its energies are doubles
 SLACK = 1e-2            # share of the tolerance: jumps between steps that the ledger ignores
 
 
@@ -103,6 +104,7 @@ class Stepped:
         self._may_wind = scene.wound.constraint != scene.constraint
         self._carried = scene.frame.path is not None
         self._may_leave_doubles = self._carried or step is not None
+        self._mechanics = parameters(scene) if self._may_leave_doubles else None
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -143,10 +145,6 @@ class Stepped:
         return started
 
     @functools.cached_property
-    def _mechanics(self):
-        return parameters(self.scene)
-
-    @functools.cached_property
     def _wound(self):
         """The Stepped of the scene with a kink at the ends of a hinge's angle."""
         method = self.method if self.method.FAMILY.KINKS else GENERAL
@@ -159,14 +157,16 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        alone = self._departs or self._may_wind or self._may_leave_doubles
+        alone = self._departs or self._may_wind or self._carried
         found = None if alone else self._bound.runner(self)
         if found is None:
             return self._run
         final, room = found
+        fixed = self.step is not None
 
         def run(start, time, out):
-            if final(room, start, time, out) != REACHED:
+            reached = final(room, start, time, out) == REACHED
+            if not reached or (fixed and not np.abs(out).max() < MODEST):
                 self._run(start, time, out)
         return run
 
@@ -255,7 +255,7 @@ class Stepped:
         So may be a pivot that moves, for which nothing is solved, and a body that is followed in
         steps of one size, which no error makes smaller.
         """
-        if not self._may_leave_doubles:
+        if not self._may_leave_doubles or np.abs(rows).max() < MODEST:
             return
         diagnoses = np.empty((len(rows), DIAGNOSIS_SIZE))
         energies(self.scene).diagnose_many(self._mechanics, rows, diagnoses)

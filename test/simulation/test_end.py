@@ -16,8 +16,10 @@ from rigid_body_sim.node.rehearsal import _Nowhere, _Queue, rehearse
 from rigid_body_sim.realtime.session import Session
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.simulation.admission import no_motion_follows
 from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, LET_GO, ZERO, row_of
+from rigid_body_sim.simulation.ensemble import ensemble
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view.runner import Runner
 
@@ -250,6 +252,20 @@ def test_a_method_that_gives_up_leaves_the_last_tick_before(effect, spin, method
         assert np.isfinite(list(one.ledger().values())).all()
     if method != 'lsoda':    # which tells the time that was asked for
         assert str(ticked.value) == str(jumped.value)
+
+
+@pytest.mark.filterwarnings('ignore')
+def test_a_runner_and_an_ensemble_of_fixed_steps_refuse_a_state_that_is_not_finite():
+    scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        f"effects: [{RATES % 'sqrt(0.0305 - t)'}]\ninitial: {{spin: 3}}\n")
+    one = Simulation(scene, 'rk4', step=7e-3)
+    start, out = scene.initial.vector, np.empty(STATE_SIZE)
+    one.runner()(start, 0.03, out)
+    assert np.isfinite(out).all()
+    with pytest.raises(NotConverged, match=r'at t = 0\.031 s the state is no longer finite'):
+        one.runner()(start, 0.031, out)
+    with pytest.raises(NotConverged, match=r'^body 0: .* at t = 0\.031 s'):
+        ensemble(scene, start[np.newaxis], [0.031], one.choice)
 
 
 class Told(_Nowhere):
