@@ -184,13 +184,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     names = _columns(columns)
     shape = (len(starts), len(times), sum(map(_width, names)))
     out = _result(shape, out, memory)
-    # one method for all bodies, or one for each body where their scenes differ
-    groups = [(integrator if isinstance(integrator, Choice) else
-               choose(one, integrator, accuracy, horizon=horizon, together=len(bodies) >= LANES),
-               bodies) for one, bodies in _alike(scenes, starts)]
-    if not isinstance(integrator, Choice):
-        groups = [own for group in groups
-                  for own in _of_own_starts(*group, starts, integrator, accuracy, horizon)]
+    groups = _groups(scenes, starts, integrator, accuracy, horizon)
     # even a hidden bar takes as long as the states of a hundred bodies
     bar = tqdm(total=len(starts), unit=' bodies', leave=False) if progress else None
     report = _silent if bar is None else bar.update
@@ -272,17 +266,26 @@ def _alike(scenes, starts):
     return [(scene, np.array(bodies)) for scene, bodies in places.values()]
 
 
-def _of_own_starts(choice, bodies, starts, integrator, accuracy, horizon):
-    """Return (Choice, its bodies) for bodies of a scene, for which a Choice was made.
+def _groups(scenes, starts, integrator, accuracy, horizon):
+    """Return (Choice, its bodies): one for all bodies, or one for each whose scene differs.
 
     The closed form of a scene nearly this one errs by what the start makes of the difference: a
     body has it only where it meets the accuracy from its own start.
     """
-    if not choice.is_nearly:
-        return [(choice, bodies)]
-    own = [choose(replace(choice.scene, initial=State(starts[body].copy())), integrator, accuracy,
-                  horizon=horizon) for body in bodies.tolist()]
-    return [(one, bodies[k:k + 1]) for k, one in enumerate(own)]
+    alike = _alike(scenes, starts)
+    if isinstance(integrator, Choice):
+        return [(integrator, bodies) for _, bodies in alike]
+    groups = []
+    for scene, bodies in alike:
+        choice = choose(scene, integrator, accuracy, horizon=horizon,
+                        together=len(bodies) >= LANES)
+        if not choice.is_nearly:
+            groups.append((choice, bodies))
+            continue
+        for k, body in enumerate(bodies.tolist()):
+            own = replace(scene, initial=State(starts[body].copy()))
+            groups.append((choose(own, integrator, accuracy, horizon=horizon), bodies[k:k + 1]))
+    return groups
 
 
 def _columns(columns):

@@ -94,7 +94,7 @@ def _attitude(o, row, values, h):
     """
     cosine, sine = values[X], o.minus(values[Y])
     (turn,), scalar = half_turn(o, row.angle(h, (AXIS,)))
-    z, w = row.q[2:]
+    _, _, z, w = row.q
     z, w = (o.gather(w, turn, o.times(z, scalar)),
             o.gather(w, scalar, o.minus(o.times(z, turn))))
     one = o.everywhere(o.number(1.0))
@@ -104,6 +104,6 @@ def _attitude(o, row, values, h):
     return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
 
 
-FORM = Form((X, Y, RATE), COUNTS ** 2, _fill, _unit, _attitude)
+FORM = Form((X, Y, RATE), COUNTS * COUNTS, _fill, _unit, _attitude)
 advance = compiled_lanes(step_of(FORM), 0)
 between = compiled_lanes(between_of(FORM), 0)

@@ -120,7 +120,7 @@ def _attitude(o, row, values, h):
     return values[:len(OF_Q)]
 
 
-FORM = Form((*OF_Q, *OF_OMEGA), COUNTS ** 2, _fill, _unit, _attitude)
+FORM = Form((*OF_Q, *OF_OMEGA), COUNTS * COUNTS, _fill, _unit, _attitude)
 advance = compiled_lanes(step_of(FORM), 0)
 advance_with_drag = compiled_lanes(step_of(FORM._replace(fill=partial(_fill, dragged=True))), 0)
 between = compiled_lanes(between_of(FORM), 0)
