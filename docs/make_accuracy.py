@@ -50,13 +50,13 @@ def _cell(lines, level, named, floor):
     return f'{found[0] * 1e6:.2g}' + (f' ({found[1]})' if named else '')
 
 
-def _study(one):
+def _study(one, limit):
     machine, peers = one['machine'], ', '.join(
         f'{name} {version}' for name, version in one['peers'].items())
     return (f'{one["cores"]} cores ({machine["processor"].split()[0]}), '
             f'Python {machine["python"].split()[0]}, numba {machine["numba"]}, '
             f'{one["made"][:10]}; medians of {one["repeats"]}; '
-            f'sweeps end at runs of {one["limit"]:g} s. Peers: {peers}.')
+            f'sweeps end at runs of {limit:g} s. Peers: {peers}.')
 
 
 def rows_of_each(result):
@@ -76,13 +76,13 @@ def rows_of_each(result):
                       f'{least:.0e}{said}']
 
 
-def _conditions(studies, names):
-    """Return the lines that say how the problems of these names were measured."""
-    measured = {}    # conditions -> the problems that were measured in them
+def _conditions(studies, results):
+    """Return the lines that say how the problems of these results were measured."""
+    measured, limits = {}, {one['problem']: one.get('limit') for one in results}
     for study in studies:
-        of = [name for name in study['problems'] if name in names]
-        if of:
-            measured.setdefault(_study(study), []).extend(of)
+        for name in study['problems']:
+            if name in limits:
+                measured.setdefault(_study(study, limits[name] or study['limit']), []).append(name)
     return [said if len(measured) == 1
             else f'- {", ".join(name.replace("_", " ") for name in problems)}: {said}'
             for said, problems in measured.items()]
@@ -105,7 +105,7 @@ def on_a_plane(found):
     heads = *(f'{level:.0e}' for level in COARSE), 'least error, rad'
     results = [result for result in found['results'] if result['problem'] in suite.ON_A_PLANE]
     return '\n'.join([
-        *_conditions(found['studies'], suite.ON_A_PLANE), '', f'| | {" | ".join(heads)} |',
+        *_conditions(found['studies'], results), '', f'| | {" | ".join(heads)} |',
         f'|---|{"---|" * len(heads)}',
         *(f'| {label} | {" | ".join(cells)} |'
           for result in results for label, cells in rows_of_each(result)),
@@ -114,10 +114,11 @@ def on_a_plane(found):
 
 def text(found):
     """Return the table, and the conditions of its measurement."""
-    lines = [*_conditions(found['studies'], suite.NAMES), '',
+    studies = found['studies']
+    found = [result for result in found['results'] if result['problem'] in suite.NAMES]
+    lines = [*_conditions(studies, found), '',
              f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |',
              f'|---|{"---|" * len(table.LEVELS)}']
-    found = [result for result in found['results'] if result['problem'] in suite.NAMES]
     for result in found:
         lines += [f'| {label} | {" | ".join(cells)} |' for label, cells in rows(result)]
     lines += _refusals(found)

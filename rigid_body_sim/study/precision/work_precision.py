@@ -124,6 +124,7 @@ def _problems(options):
 
 def study(problem, with_peers, limit, repeats):
     """Return the result of one problem: measurements, the reference's digits and the floors."""
+    limit *= problem.patience
     truth = reference.load(problem)
     if truth is None:
         with tqdm(total=100, desc=f'{problem.name}: reference', disable=None, leave=False) as bar:
@@ -143,7 +144,8 @@ def study(problem, with_peers, limit, repeats):
         'floor': float(truth.floor[-1]),
         'largest_floor': float(truth.floor.max()),
         'floor_omega': float(truth.floor_omega[-1]),
-        **measure.measure(problem, truth, runners, problem.patience * limit, repeats),
+        'limit': limit,
+        **measure.measure(problem, truth, runners, limit, repeats),
     }
 
 

@@ -165,6 +165,7 @@ def test_peers_solve_the_same_equations(name):
     assert omegas.max() < 1e-10
 
 
+# measured: at most 1.1e-13 rad, 3.2e-12 rad/s
 @pytest.mark.parametrize('name', suite.ON_A_PLANE)
 def test_our_methods_meet_the_references_on_a_plane(name):
     problem = suite.problem(name)
@@ -173,8 +174,8 @@ def test_our_methods_meet_the_references_on_a_plane(name):
                if one.name == 'taylor')
     line, = measure.measure(problem, truth, [method], 1.0, 1)['lines']
     point, = line['points']
-    assert point['largest_error'] < 1e-11
-    assert point['largest_omega_error'] < 1e-10
+    assert point['largest_error'] < 1e-12
+    assert point['largest_omega_error'] < 3e-11
 
 
 @pytest.mark.without_numba
