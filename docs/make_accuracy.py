@@ -109,7 +109,9 @@ def on_a_plane(found):
         f'|---|{"---|" * len(heads)}',
         *(f'| {label} | {" | ".join(cells)} |'
           for result in results for label, cells in rows_of_each(result)),
-        *_refusals(results)])
+        *_refusals([{**result, 'refused': {
+            name: reason for name, reason in result['refused'].items()
+            if not name.endswith(figure.FIXED)}} for result in results])])
 
 
 def text(found):
