@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make the pictures and the table of docs/accuracy.md, and the README's picture.
+"""Make the pictures and the tables of docs/accuracy.md, and the README's picture.
 
 They show what `work_precision --suite --peers --output DIR` wrote.
 
@@ -8,9 +8,10 @@ They show what `work_precision --suite --peers --output DIR` wrote.
     .venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
     .venv/bin/python docs/make_accuracy.py study-full/work_precision.json
 
-The table stands between ``<!-- work_precision -->`` and ``<!-- end -->``. `make study-full` does
-both. The arguments may be several files, studies of single problems for example; the last one with
-a problem counts. docs/work_precision.json may be one of them: what it has stands.
+The tables stand between ``<!-- work_precision -->``, ``<!-- on_a_plane -->`` and ``<!-- end -->``.
+`make study-full` does both. The arguments may be several files, studies of single problems for
+example; the last one with a problem counts. docs/work_precision.json may be one of them: what it
+has stands.
 """
 
 import json
@@ -22,7 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from rigid_body_sim.study.precision import figure, runner, suite, table
 
 DOCS = pathlib.Path(__file__).resolve().parent
-MARK = re.compile(r'(<!-- work_precision -->\n).*?(<!-- end -->)', re.DOTALL)
+COARSE = 1e-1, 1e-2, 1e-3, 1e-6, 1e-9    # levels of the table of bodies on a plane, rad
 ONE_MORE = runner.ONE_MORE
 
 
@@ -49,46 +50,89 @@ def _cell(lines, level, named, floor):
     return f'{found[0] * 1e6:.2g}' + (f' ({found[1]})' if named else '')
 
 
-def _study(one):
+def _study(one, limit):
     machine, peers = one['machine'], ', '.join(
         f'{name} {version}' for name, version in one['peers'].items())
     return (f'{one["cores"]} cores ({machine["processor"].split()[0]}), '
             f'Python {machine["python"].split()[0]}, numba {machine["numba"]}, '
             f'{one["made"][:10]}; medians of {one["repeats"]}; '
-            f'sweeps end at runs of {one["limit"]:g} s. Peers: {peers}.')
+            f'sweeps end at runs of {limit:g} s. Peers: {peers}.')
+
+
+def rows_of_each(result):
+    """Yield the rows of a problem on a plane: the cost of ours, and that of each peer.
+
+    The last cell is the least error of all settings, with its setting.
+    """
+    about = f'{result["problem"].replace("_", " ")}, {result["duration"]:g} s'
+    lines = table.fronts(result['lines'])
+    ours = [line for line in lines if not line['is_peer']]
+    for label, of in ((f'**{about}**: ours', ours),
+                      *((line['name'], [line]) for line in lines if line['is_peer'])):
+        least, setting = min((point['error'], point['setting']) for line in of
+                             for point in line['points'])
+        said = f' ({setting})' if isinstance(setting, str) else ''
+        yield label, [*(_cell(of, level, of is ours, result['floor']) for level in COARSE),
+                      f'{least:.0e}{said}']
+
+
+def _conditions(studies, results):
+    """Return the lines that say how the problems of these results were measured."""
+    measured, limits = {}, {one['problem']: one.get('limit') for one in results}
+    for study in studies:
+        for name in study['problems']:
+            if name in limits:
+                measured.setdefault(_study(study, limits[name] or study['limit']), []).append(name)
+    return [said if len(measured) == 1
+            else f'- {", ".join(name.replace("_", " ") for name in problems)}: {said}'
+            for said, problems in measured.items()]
+
+
+def _refusals(results):
+    """Return the lines that say what was refused, and why."""
+    refusals = {}
+    for result in results:
+        for name, reason in result['refused'].items():
+            refusals.setdefault((name, reason.split('. ')[0]), []).append(
+                result['problem'].replace('_', ' '))
+    return ['', 'What was refused, and why:', '',
+            *(f'- {name}: {reason} ({", ".join(problems)})'
+              for (name, reason), problems in refusals.items())]
+
+
+def on_a_plane(found):
+    """Return the table of bodies on a plane, and the conditions of its measurement."""
+    heads = *(f'{level:.0e}' for level in COARSE), 'least error, rad'
+    results = [result for result in found['results'] if result['problem'] in suite.ON_A_PLANE]
+    return '\n'.join([
+        *_conditions(found['studies'], results), '', f'| | {" | ".join(heads)} |',
+        f'|---|{"---|" * len(heads)}',
+        *(f'| {label} | {" | ".join(cells)} |'
+          for result in results for label, cells in rows_of_each(result)),
+        *_refusals([{**result, 'refused': {
+            name: reason for name, reason in result['refused'].items()
+            if not name.endswith(figure.FIXED)}} for result in results])])
 
 
 def text(found):
     """Return the table, and the conditions of its measurement."""
-    measured = {}    # conditions -> the problems that were measured in them
-    for study in found['studies']:
-        measured.setdefault(_study(study), []).extend(study['problems'])
-    lines = []
-    for said, problems in measured.items():
-        names = ', '.join(name.replace('_', ' ') for name in problems)
-        lines += [said if len(measured) == 1 else f'- {names}: {said}']
-    lines += ['',
+    studies = found['studies']
+    found = [result for result in found['results'] if result['problem'] in suite.NAMES]
+    lines = [*_conditions(studies, found), '',
              f'| | {" | ".join(f"{level:.0e}" for level in table.LEVELS)} |',
              f'|---|{"---|" * len(table.LEVELS)}']
-    for result in found['results']:
+    for result in found:
         lines += [f'| {label} | {" | ".join(cells)} |' for label, cells in rows(result)]
-    refusals = {}
-    for result in found['results']:
-        for name, reason in result['refused'].items():
-            refusals.setdefault((name, reason.split('. ')[0]), []).append(
-                result['problem'].replace('_', ' '))
-    lines += ['', 'What was refused, and why:', '']
-    lines += [f'- {name}: {reason} ({", ".join(problems)})'
-              for (name, reason), problems in refusals.items()]
+    lines += _refusals(found)
     notes = {}    # one note of each kind
-    for line in (line for result in found['results']
+    for line in (line for result in found
                  for line in result['lines'] if line['is_peer']):
         for note in line['notes']:
             notes.setdefault((line['name'], re.sub(r'[0-9.e+-]*[0-9]', '', note)),
                              note.split('. ')[0])
     lines += ['', 'What peers get wrong, or give up on, at some settings:', '']
     lines += [f'- {name}: {note}' for (name, _), note in notes.items()]
-    return '\n'.join(lines) + '\n'
+    return '\n'.join(lines)
 
 
 def _short(value):
@@ -112,16 +156,22 @@ def main(*paths):
             from_study |= dict.fromkeys(names, len(studies))
             studies.append(study)
         measured |= {result['problem']: result for result in one['results']}
-    names = [name for name in suite.NAMES if name in measured]
+    names = [name for name in suite.NAMES + suite.ON_A_PLANE if name in measured]
     results = [measured[name] for name in names]
     found = {'studies': [study | {'problems': of} for number, study in enumerate(studies)
                          if (of := [name for name in names if from_study[name] == number])],
              'results': results}
     page = DOCS / 'accuracy.md'
-    page.write_text(MARK.sub(lambda match: f'{match[1]}{text(found)}{match[2]}', page.read_text()))
+    said = page.read_text()
+    for name, made in (('work_precision', text(found)), ('on_a_plane', on_a_plane(found))):
+        begin = said.index(f'<!-- {name} -->\n') + len(f'<!-- {name} -->\n')
+        said = said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):]
+    page.write_text(said)
     DOCS.joinpath('work_precision.json').write_text(json.dumps(_short(found)) + '\n')
-    for name, chosen in (('work_precision', True), ('work_precision_suite', False)):
-        drawn = [result for result in results if (result['problem'] in suite.QUICK) == chosen]
+    for name, chosen in (('work_precision', suite.QUICK),
+                         ('work_precision_suite', set(suite.NAMES) - set(suite.QUICK)),
+                         ('work_precision_plane', suite.ON_A_PLANE)):
+        drawn = [result for result in results if result['problem'] in chosen]
         figure.draw(drawn).savefig(
             DOCS / 'images' / f'{name}.png', dpi=150, metadata={'Software': None})
 

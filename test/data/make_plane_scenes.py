@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make plane_scenes.json: the shipped scenes of bodies on a plane, to 34 digits, with events.
 
-    PYTHONPATH=. .venv-peers/bin/python test/data/make_plane_scenes.py
+    PYTHONPATH=. .venv-peers/bin/python test/data/make_plane_scenes.py [--references]
+
+With --references it makes the references of the study instead, for those problems of the suite
+(rigid_body_sim/study/precision/suite.py) that are on a plane, with the floors that half an ulp on
+every input sets.
 
 The method is heyoka's Taylor series with quadruple numbers, and the equations differ from the
 package's. Without slip the unknown is the angular momentum M about the point of contact,
@@ -15,19 +19,26 @@ dt = |u| dtau; below 1e-32 m/s it has died. Only the doubles of the scenes are s
 
 import json
 import pathlib
+import sys
+from concurrent.futures import ProcessPoolExecutor
 
 import heyoka as hy
 import numpy as np
+from mpmath import mp, mpf
 
 from rigid_body_sim.mechanics.contact.parameters import FLAT
 from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.study.precision import inputs, suite
+from rigid_body_sim.study.precision import reference as references
 
 REAL = hy.real128
 SCENES = {'rolling_disk': 10, 'euler_disk': 3, 'rattleback': 10, 'tippe_top': 5, 'rising_egg': 5,
           'routh_sphere': 10, 'chaplygin_sphere': 10}    # until when, s
 SAMPLES = 20
-DEAD = REAL('1e-32')
-TOLERANCE = 1e-33
+# tolerance, and the slip (m/s) that has died: of the truth, of its check, of the floors
+TRUTH, CHECK, ROUGH = (1e-33, '1e-32'), (1e-30, '1e-28'), (1e-24, '1e-21')
+DRAWS = 8    # random choices of signs for a floor
+NEWTON = 8    # steps of Newton's method for the time of a sample: dt/dtau = |u|
 
 
 def cross(a, b):
@@ -61,14 +72,17 @@ def inverse(m):
 
 
 class Body:
-    """The numbers and the geometry of a scene."""
+    """The numbers and the geometry of a scene; `move` is applied to each of its doubles."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, move=inputs.exactly, fine=TRUTH):
         def number(x):
-            return REAL(float(x))
-        body, self.scene = scene.body, scene
+            return REAL(mp.nstr(move(x), 40))
+        body, self.scene, self.tolerance = scene.body, scene, fine[0]
+        self.dead = REAL(fine[1])
         self.m, self.g = number(body.mass), number(scene.effect('gravity').g)
-        self.mu, self.viscous = scene.contact.mu, number(scene.contact.rolling_viscous)
+        self.rolls = scene.contact.mu > 1e300
+        self.mu = REAL(0) if self.rolls else number(scene.contact.mu)
+        self.viscous = number(scene.contact.rolling_viscous)
         self.inertia = [[number(x) for x in row] for row in body.about_center.matrix]
         self.kind, self.size = body.surface.kind, [number(x) for x in body.surface.size]
         self.middle = [number(a) - number(b)
@@ -162,7 +176,7 @@ def sliding(body):
     carried = cross(omega, r)
     ux, uy = vx + dot(e1, carried), vy + dot(e2, carried)
     speed = hy.sqrt(ux * ux + uy * uy)
-    mu = REAL(float(body.mu))
+    mu = body.mu
     push = plus(n, times(-mu * ux / speed, e1), times(-mu * uy / speed, e2))    # f = N push
     upside = inverse(body.inertia)
     free = apply(upside, cross(apply(body.inertia, omega), omega))
@@ -178,9 +192,10 @@ def sliding(body):
     return [*q, *omega, vx, vy, t], [rate * speed for rate in rates]
 
 
-def integrator(symbols, rates, start):
+def integrator(equations, start, tolerance):
+    symbols, rates = equations
     return hy.taylor_adaptive([(s, e + 0.0 * symbols[0]) for s, e in zip(symbols, rates)],
-                              np.array(start, dtype=REAL), fp_type=REAL, tol=REAL(TOLERANCE),
+                              np.array(start, dtype=REAL), fp_type=REAL, tol=REAL(tolerance),
                               compact_mode=True)
 
 
@@ -190,15 +205,16 @@ def orientation(q):
 
 
 def roll(body, q, omega, begin, samples, found):
-    """Go on without slip; fill `found` with the samples. Return the integrator."""
+    """Go on without slip; fill `found` with q and omega at the samples. Return the integrator."""
     r = body.lowest(axes(q)[2])
-    symbols, rates = rolling(body)
-    one = integrator(symbols, rates, [*q, *apply(body.heavy(r), omega)])
+    one = integrator(rolling(body), [*q, *apply(body.heavy(r), omega)], body.tolerance)
     one.time = begin
     for time in samples:
         if REAL(time) >= begin:
             one.propagate_until(REAL(time))
-            found[time] = list(one.state[:4])
+            q = list(one.state[:4])
+            heavy = body.heavy(body.lowest(axes(q)[2]))
+            found[time] = q, apply(inverse(heavy), list(one.state[4:]))
     return one
 
 
@@ -229,8 +245,8 @@ def flat(body, one):
 
 def slide(body, samples, found):
     """Slide until the slip has died; return (q, omega, time)."""
-    symbols, rates = sliding(body)
-    one = integrator(symbols, rates, [*body.q, *body.omega, body.v[0], body.v[1], REAL(0)])
+    one = integrator(sliding(body), [*body.q, *body.omega, body.v[0], body.v[1], REAL(0)],
+                     body.tolerance)
     left = list(samples)
 
     def speed():
@@ -239,42 +255,73 @@ def slide(body, samples, found):
         carried = cross(omega, body.lowest(n))
         return ((v[0] + dot(e1, carried)) ** 2 + (v[1] + dot(e2, carried)) ** 2) ** REAL('0.5')
 
-    while speed() > DEAD:
+    while speed() > body.dead:
         state, tau = one.state.copy(), one.time
         one.step()
         while left and one.state[9] > REAL(left[0]):
             ended, beyond = one.time, one.state.copy()
-            low, high = tau, ended
-            for _ in range(125):
-                middle = (low + high) / REAL(2)
+            for _ in range(NEWTON):
+                aim = one.time - (one.state[9] - REAL(left[0])) / speed()
                 one.state[:], one.time = state, tau
-                one.propagate_until(middle)
-                low, high = (low, middle) if one.state[9] > REAL(left[0]) else (middle, high)
-            found[left.pop(0)] = list(one.state[:4])
+                one.propagate_until(min(max(aim, tau), ended))
+            found[left.pop(0)] = list(one.state[:4]), list(one.state[4:7])
             one.state[:], one.time = beyond, ended
     return list(one.state[:4]), list(one.state[4:7]), one.state[9]
+
+
+def motion(body, samples):
+    """Return q and omega at the samples, and the events."""
+    found, events = {}, []
+    if body.rolls:
+        one = roll(body, body.q, body.omega, REAL(0), samples, found)
+        if float(body.viscous) > 0.0:
+            events.append(('rest', str(flat(body, one))))
+    else:
+        q, omega, time = slide(body, samples, found)
+        events.append(('rolling began', str(time)))
+        roll(body, q, omega, time, samples, found)
+    return [found[time] for time in samples], events
+
+
+def reference(name):
+    """Write the reference of a problem of the study; return a report of one line."""
+    problem = suite.problem(name)
+    samples = [problem.duration * (k + 1) / references.SAMPLES for k in range(references.SAMPLES)]
+
+    def run(move, fine):
+        rows, _ = motion(Body(problem.scene, move, fine), samples)
+        return ([tuple(mpf(x) for x in orientation(q)) for q, _ in rows],
+                [tuple(mpf(str(x)) for x in omega) for _, omega in rows])
+
+    with mp.workprec(references.BITS):
+        best = run(inputs.exactly, TRUTH)
+        bare = references.Reference(np.array(samples), *best, None, None, 0.0)
+        apart = max(one.max() for one in bare.distances(*run(inputs.exactly, CHECK)))
+        floors = np.max([bare.distances(*run(inputs.Moved(seed), ROUGH))
+                         for seed in range(DRAWS)], axis=0)
+        references.save(name, problem, references.Reference(
+            bare.times, *best, *floors, float(-np.log10(max(apart, 1e-34)))))
+    return (f'{name}: two runs apart by {apart:.0e}, floor at the end {floors[0][-1]:.1e} rad, '
+            f'{floors[1][-1]:.1e} rad/s')
 
 
 def main():
     """Write plane_scenes.json."""
     made = {}
     for name, end in SCENES.items():
-        body, found, events = Body(load_scene(name)), {}, []
         samples = [end * (k + 1) / SAMPLES for k in range(SAMPLES)]
-        if body.mu < 1e300:
-            q, omega, time = slide(body, samples, found)
-            events.append(('rolling began', str(time)))
-            roll(body, q, omega, time, samples, found)
-        else:
-            one = roll(body, body.q, body.omega, REAL(0), samples, found)
-            if float(body.viscous) > 0.0:
-                events.append(('rest', str(flat(body, one))))
+        rows, events = motion(Body(load_scene(name)), samples)
         made[name] = {'times': samples, 'events': events,
-                      'orientations': [orientation(found[time]) for time in samples]}
+                      'orientations': [orientation(q) for q, _ in rows]}
         print(name, events, made[name]['orientations'][-1], flush=True)
     path = pathlib.Path(__file__).with_name('plane_scenes.json')
     path.write_text(json.dumps(made, indent=1) + '\n')
 
 
 if __name__ == '__main__':
-    main()
+    if sys.argv[1:] == ['--references']:
+        with ProcessPoolExecutor(2) as pool:
+            for line in pool.map(reference, suite.ON_A_PLANE):
+                print(line, flush=True)
+    else:
+        main()

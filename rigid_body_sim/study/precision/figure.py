@@ -3,6 +3,7 @@
 
 It is readable in print and by the colour-blind. Lines that are the cheapest of ours, or of the
 peers, at some accuracy are thick; fixed steps of a method that also controls its error are dotted.
+Variants of one line are drawn as their front (table.py).
 """
 
 import math
@@ -50,8 +51,9 @@ def panel(axes, result, looks):
     axes.axhspan(LEAST / 4.0, floor, color=SHADE, linewidth=0.0, zorder=0)
     axes.text(0.99, LEAST / 3.0, 'grey: half an ulp on the inputs', ha='right', fontsize=8,
               transform=axes.get_yaxis_transform())
-    ours = [line for line in result['lines'] if not line['is_peer']]
-    peers = [line for line in result['lines'] if line['is_peer']]
+    shown = table.fronts(result['lines'])
+    ours = [line for line in shown if not line['is_peer']]
+    peers = [line for line in shown if line['is_peer']]
     for lines, dashes, filled in ((ours, '-', True), (peers, (0, (4, 2)), False)):
         leading = leaders(lines)
         for line in lines:

@@ -13,6 +13,7 @@ import yaml
 from mpmath import mp, mpf
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.drag import KEYS, Drag, ShapedDrag
 from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.effects.internal_dissipation import InternalDissipation
@@ -20,6 +21,7 @@ from rigid_body_sim.scene.effects.sliding_friction import SlidingFriction
 from rigid_body_sim.scene.effects.spring import Spring
 from rigid_body_sim.scene.effects.strike import Strike
 from rigid_body_sim.scene.effects.torque import Torque
+from rigid_body_sim.study.precision import suite
 
 KINDS = 'free', 'pivot', 'hinge', 'table'
 LAWS = Drag, Gravity, InternalDissipation, ShapedDrag, SlidingFriction, Spring, Strike, Torque
@@ -162,6 +164,10 @@ def refuse_unknown(scene):
     if held not in KINDS:
         raise BadInput(f'{scene.name}: constraint', f'no reference is made for {held!r}',
                        ', '.join(KINDS))
+    if scene.constraint.mechanism is Mechanism.PLANE:
+        raise BadInput(f'{scene.name}: constraint',
+                       'no reference is made for a body with a surface on a plane',
+                       f'the problems {", ".join(suite.ON_A_PLANE)}, whose references are kept')
     for effect in scene.effects:
         if (not isinstance(effect, LAWS)
                 or (isinstance(effect, Spring) and effect.at is not None and held != 'pivot')

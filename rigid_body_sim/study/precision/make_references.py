@@ -2,7 +2,8 @@
 """Make references/*.json: the suite's references and the floors of its problems.
 
 A reference is a Taylor series in fixed point. If its file exists already, the script prints how
-far the new states are from those in it.
+far the new states are from those in it. References of bodies on a plane are made by
+test/data/make_plane_scenes.py.
 
 ::
 

@@ -43,9 +43,9 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
     Returns
     -------
     dict
-        ``lines``: for each runner name, control, is_peer, ``notes`` (what went wrong at some
-        settings) and ``points``: setting, set_up (s), errors, residuals, cpu per simulated second:
-        median, least, most; ``refused``: name -> reason.
+        ``lines``: for each runner name, variant, control, is_peer, ``notes`` (what went wrong at
+        some settings) and ``points``: setting, set_up (s), errors, residuals, cpu per simulated
+        second: median, least, most; ``refused``: name -> reason.
     """
     balance = Balance(problem.scene)
     lines, refused, timed = [], {}, []
@@ -59,8 +59,9 @@ def measure(problem, reference, runners, limit, repeats, watch=None):
         except (RefusedError, BadInput) as error:
             notes.append(str(error))
         if points:
-            lines.append({'name': runner.name, 'control': runner.control,
-                          'is_peer': runner.is_peer, 'points': points, 'notes': notes})
+            lines.append({'name': runner.name, 'variant': runner.variant,
+                          'control': runner.control, 'is_peer': runner.is_peer, 'points': points,
+                          'notes': notes})
         else:
             refused[runner.name] = notes[0]
     gc.collect()

@@ -31,11 +31,12 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Runner:
-    """One line of the figure.
+    """One line of the figure, or one variant of it.
 
     Attributes
     ----------
     name : str
+        Runners of one name are variants of one line, which shows the best of them at each cost.
     control : str
         Meaning of a setting: accuracy, tolerance, step or none.
     settings : tuple
@@ -43,6 +44,8 @@ class Runner:
     make : callable
         Takes a setting and returns a Run.
     is_peer : bool
+    variant : str
+        What a variant sets beside `settings`.
     """
 
     name: str
@@ -50,6 +53,7 @@ class Runner:
     settings: tuple
     make: object
     is_peer: bool = False
+    variant: str = ''
 
 
 class Run:

@@ -4,6 +4,8 @@
 The levels are 1e-3, 1e-6, 1e-9 and 1e-12 rad at the end; errors on the way are listed too.
 """
 
+import math
+
 from rigid_body_sim.study.precision.runner import ONE_MORE
 
 LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -13,6 +15,31 @@ def cost_at(line, level, error='error'):
     """Return the least CPU time per simulated second (s) with an error up to a level, or None."""
     return min((point['cpu']['median'] for point in line['points'] if point[error] <= level),
                default=None)
+
+
+def fronts(found):
+    """Return lines of which those of one name are joined: their best points at each cost.
+
+    Variants of a line differ in what its user sets beside steps or tolerances. A point of the
+    joined line is better than all cheaper ones; its setting begins with its variant.
+    """
+    groups = {}
+    for line in found:
+        groups.setdefault(line['name'], []).append(line)
+    return [lines[0] if len(lines) == 1 else _front(lines) for lines in groups.values()]
+
+
+def _front(lines):
+    points = sorted(((point['cpu']['median'], point['error'], line['variant'], point)
+                     for line in lines for point in line['points']), key=lambda one: one[:2])
+    kept, least = [], math.inf
+    for _, error, variant, point in points:
+        if error < least:
+            kept.append(point | {'setting': f'{variant}, {lines[0]["control"]} '
+                                            f'{point["setting"]:.2g}'})
+            least = error
+    return lines[0] | {'variant': '', 'points': kept,
+                       'notes': [note for line in lines for note in line['notes']]}
 
 
 def best(line):
@@ -45,7 +72,8 @@ def lines(result):
             f'  {"CPU us per simulated second for":34}'
             f'{"".join(f"{level:>10.0e}" for level in LEVELS)}{"best rad":>11}{"on the way":>12}'
             f'{"omega":>10}{"energy":>10}{"L":>10}{"set-up s":>10}']
-    for line in result['lines']:
+    shown = fronts(result['lines'])
+    for line in shown:
         costs = ''.join(f'{_micro(cost_at(line, level)):>10}' for level in LEVELS)
         point = min(line['points'], key=lambda one: one['error'])
         name = f'{line["name"]}{" (peer)" if line["is_peer"] else ""}'
@@ -53,7 +81,7 @@ def lines(result):
                     f'{point["omega_error"]:10.1e}'
                     f'{point["energy_residual"]:10.1e}{point["momentum_residual"]:10.1e}'
                     f'{line["points"][0]["set_up"]:10.2f}')
-    text += [f'  {line["name"]}: {note}' for line in result['lines']
+    text += [f'  {line["name"]}: {note}' for line in shown
              for note in line['notes'][-1:]]
     text += [f'  {name} does not run it: {reason}' for name, reason in result['refused'].items()]
     if any(line['is_peer'] for line in result['lines']):

@@ -17,7 +17,10 @@ from rigid_body_sim.recording.about import machine, version
 from rigid_body_sim.study.precision import measure, peers, reference, runner, suite, table
 
 QUICK_LIMIT, FULL_LIMIT = 0.03, 0.15
-"""Limits of the CPU seconds of one run; a sweep ends at the first run beyond."""
+"""Limits of the CPU seconds of one run; a sweep ends at the first run beyond.
+
+On a plane they are suite.PATIENCE times as long.
+"""
 QUICK_REPEATS, FULL_REPEATS = 5, 7
 
 
@@ -102,24 +105,26 @@ def _run(options):
 
 
 def _problems(options):
-    if options.scene and not (options.scene in suite.NAMES and not options.set
+    known = suite.NAMES + suite.ON_A_PLANE
+    if options.scene and not (options.scene in known and not options.set
                               and options.duration is None):
         duration = 20.0 if options.duration is None else options.duration
         if not 0.0 < duration <= 1e6:
             raise BadInput(
                 '--duration', f'got {duration!r}', 'simulated seconds, above 0, at most 1e6')
-        if options.scene in suite.NAMES:
+        if options.scene in known:
             raise BadInput('--scene', f'{options.scene} is a problem of the suite',
                            'it takes no --set and no --duration')
         return [suite.of_scene(options.scene, options.set, duration)]
     if options.set or options.duration is not None:
         raise BadInput('--set, --duration', 'are for one scene', 'name it: --scene NAME')
-    names = [options.scene] if options.scene else suite.NAMES if options.suite else suite.QUICK
+    names = [options.scene] if options.scene else known if options.suite else suite.QUICK
     return [suite.problem(name) for name in names]
 
 
 def study(problem, with_peers, limit, repeats):
     """Return the result of one problem: measurements, the reference's digits and the floors."""
+    limit *= problem.patience
     truth = reference.load(problem)
     if truth is None:
         with tqdm(total=100, desc=f'{problem.name}: reference', disable=None, leave=False) as bar:
@@ -139,6 +144,7 @@ def study(problem, with_peers, limit, repeats):
         'floor': float(truth.floor[-1]),
         'largest_floor': float(truth.floor.max()),
         'floor_omega': float(truth.floor_omega[-1]),
+        'limit': limit,
         **measure.measure(problem, truth, runners, limit, repeats),
     }
 

@@ -12,6 +12,8 @@ from near import near
 from rigid_body_sim import integrators
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.study.precision import (
     figure,
     measure,
@@ -22,6 +24,7 @@ from rigid_body_sim.study.precision import (
     table,
     work_precision,
 )
+from rigid_body_sim.study.precision.peers import given, plane
 
 OFF = 1e-5
 
@@ -162,6 +165,59 @@ def test_peers_solve_the_same_equations(name):
     assert omegas.max() < 1e-10
 
 
+# measured: at most 1.1e-13 rad, 3.2e-12 rad/s
+@pytest.mark.parametrize('name', suite.ON_A_PLANE)
+def test_our_methods_meet_the_references_on_a_plane(name):
+    problem = suite.problem(name)
+    truth = reference.load(problem)
+    method, = (dataclasses.replace(one, settings=(1e-12,)) for one in runner.ours(problem, truth)
+               if one.name == 'taylor')
+    line, = measure.measure(problem, truth, [method], 1.0, 1)['lines']
+    point, = line['points']
+    assert point['largest_error'] < 1e-12
+    assert point['largest_omega_error'] < 3e-11
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('name', suite.ON_A_PLANE)
+def test_engines_are_given_a_body_that_touches_the_plane(name):
+    scene = suite.problem(name).scene
+    numbers = plane.of(scene)
+    q, spin = numbers.start[:4], numbers.start[4:]
+    arm = np.array(rotate(*q, *np.subtract(
+        scene.body.surface.lowest(rotate_back(*q, 0.0, 0.0, 1.0)), scene.body.center_of_mass)))
+    assert abs(numbers.place[2] + arm[2]) < 1e-15
+    slip = numbers.velocity + np.cross(spin, arm)
+    assert abs(slip[2]) < 1e-14
+    assert numbers.rolls == (name != 'tippe_top')
+    if numbers.rolls:
+        assert np.abs(slip).max() < 1e-14
+        assert numbers.mu == plane.STICKY
+    start = [*scene.initial.orientation, *scene.initial.angular_velocity]
+    assert np.abs(np.subtract(numbers.state(numbers.start), start)).max() < 1e-13
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('surface', 'table', 'more', 'why'), [
+    ('torus: {radius: 0.5, tube: 0.1}', 'table', '', 'torus'),
+    ('sphere: {radius: 0.5}', '{table: {normal: [0.1, 0, 1]}}', '', 'slope'),
+    ('sphere: {radius: 0.5}', '{table: {restitution: 0.5}}', '', 'impacts'),
+    ('sphere: {radius: 0.5}', 'table', ', rolling_friction: {viscous: 0.1}', 'more than weight')])
+def test_engines_are_not_asked_what_they_do_otherwise(surface, table, more, why):
+    scene = parse_scene(
+        f'scene: a\nbody: {{mass: 1, inertia: [0.1, 0.1, 0.12], surface: {{{surface}}}}}\n'
+        f'constraint: {table}\neffects: [gravity: {{g: 9.81}}, sliding_friction: {{mu: 0.3}}'
+        f'{more}]\ninitial: {{angular_velocity: [1, 0, 3]}}\n')
+    with pytest.raises(runner.RefusedError, match=why):
+        plane.of(scene)
+
+
+@pytest.mark.without_numba
+def test_peers_without_contact_refuse_a_body_with_a_surface():
+    with pytest.raises(runner.RefusedError, match='contact'):
+        given.of(suite.problem('tippe_top'))
+
+
 @pytest.mark.parametrize(('name', 'package'), [
     ('heyoka', 'heyoka'), ('MuJoCo', 'mujoco'), ('Drake', 'pydrake'), ('Exudyn', 'exudyn'),
     ('PyBullet', 'pybullet'), ('Pinocchio', 'pinocchio'), ('Basilisk', 'Basilisk')])
@@ -186,7 +242,8 @@ def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, m
     assert (tmp_path / 'made' / 'work_precision.png').stat().st_size > 10000
     assert json.loads((tmp_path / 'made' / 'work_precision.json').read_text()) == found
     for arguments in (['--duration', '-1', '--scene', 'heavy_top'], ['--duration', '3'],
-                      ['--scene', 'nowhere'], ['--scene', 'racket', '--duration', '3']):
+                      ['--scene', 'nowhere'], ['--scene', 'euler_disk'],
+                      ['--scene', 'racket', '--duration', '3']):
         assert work_precision.main(arguments) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
 

@@ -147,13 +147,25 @@ def test_a_ball_agrees_with_extrapolation(name):
             assert apart(omega, expected[4:7]) < 1e-12
 
 
-@pytest.mark.parametrize('name', suite.NAMES)
+@pytest.mark.parametrize('name', suite.NAMES + suite.ON_A_PLANE)
 def test_every_problem_has_a_reference_of_this_very_scene(name):
     found = reference.load(suite.problem(name))
     assert found.digits >= 25.0
     assert found.times[-1] == suite.problem(name).duration
     assert (found.floor > 0.0).all()
     assert all(len(mp.nstr(x, 34)) > 25 for x in found.orientation[-1] if x)
+
+
+@pytest.mark.parametrize('name', suite.ON_A_PLANE)
+def test_references_on_a_plane_are_those_of_the_shipped_scenes(name):
+    found, rows = reference.load(suite.problem(name)), json.loads(
+        (DATA / 'plane_scenes.json').read_text())[name]
+    with mp.workdps(40):
+        kept = dict(zip(rows['times'], rows['orientations']))
+        both = [k for k, time in enumerate(found.times.tolist()) if time in kept]
+        assert len(both) == 4
+        for k in both:
+            assert apart(found.orientation[k], list(map(mpf, kept[found.times[k]]))) < 1e-29
 
 
 def test_a_reference_computed_now_is_the_cached_one():

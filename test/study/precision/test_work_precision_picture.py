@@ -14,9 +14,9 @@ def point(error, cost, **more):
             'cpu': {'median': cost, 'least': 0.9 * cost, 'most': 1.5 * cost}, **more}
 
 
-def line(name, *points, peer=False, control='accuracy', notes=()):
-    return {'name': name, 'control': control, 'is_peer': peer, 'notes': list(notes),
-            'points': [point(*one) for one in points]}
+def line(name, *points, peer=False, control='accuracy', notes=(), variant=''):
+    return {'name': name, 'variant': variant, 'control': control, 'is_peer': peer,
+            'notes': list(notes), 'points': [point(*one) for one in points]}
 
 
 RESULT = {
@@ -48,6 +48,24 @@ def test_ratios_compare_our_cheapest_with_the_cheapest_peer():
     assert table.ratios(RESULT, lambda name: False) == [None] * 4
     alone = RESULT | {'lines': [one for one in RESULT['lines'] if not one['is_peer']]}
     assert table.ratios(alone, lambda name: True) == [None] * 4
+
+
+def test_variants_of_one_line_are_joined_to_the_points_that_no_cheaper_one_beats():
+    engine = [line('engine', (1.0, 1e-4), (0.1, 1e-3), (0.02, 1e-2), peer=True, control='step',
+                   variant='soft', notes=['it sank']),
+              line('engine', (0.5, 2e-4), (0.2, 2e-3), (0.01, 2e-2), peer=True, control='step',
+                   variant='stiff', notes=['it shook'])]
+    alone, joined = table.fronts([LINES['dop8'], *engine])
+    assert alone == LINES['dop8']
+    assert [(one['error'], one['cpu']['median']) for one in joined['points']] == [
+        (1.0, 1e-4), (0.5, 2e-4), (0.1, 1e-3), (0.02, 1e-2), (0.01, 2e-2)]
+    assert [one['setting'] for one in joined['points'][:2]] == ['soft, step 1', 'stiff, step 1']
+    assert joined['notes'] == ['it sank', 'it shook']
+    result = RESULT | {'lines': [LINES['dop8'], *engine]}
+    assert sum('engine (peer)' in row for row in table.lines(result)) == 1
+    axes, = figure.draw([result]).axes
+    drawn = axes.containers[-1][0].get_ydata().tolist()
+    assert drawn == [1.0, 0.5, 0.1, 0.02, 0.01]
 
 
 def test_who_leads_at_some_level_is_drawn_thick():

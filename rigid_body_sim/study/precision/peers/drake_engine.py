@@ -7,13 +7,16 @@ Contact uses its discrete solver.
 import numpy as np
 
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum, plane
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'Drake'
 ACCURACIES = tuple(10.0 ** -k for k in range(1, 13))
 MAX_STEP = 0.1
 """Default of Drake, s."""
+CONTACT = 'kSap', 'kLagged', 'kTamsi'
+DEEP, CREEP = 1e-5, 1e-4
+"""How far a body with a surface sinks, over its size; at what speed friction holds it, m/s."""
 
 
 def version():
@@ -25,7 +28,14 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield Drake with two of its methods; for contact, with one at fixed steps."""
+    """Yield Drake with two of its methods; for contact, with its solvers at fixed steps."""
+    if plane.has_surface(problem.scene):
+        numbers, steps = plane.of(problem.scene), steps_for(problem, reference)
+        for solver in CONTACT:
+            yield Runner(NAME, 'step', steps,
+                         lambda step, solver=solver: _touching(numbers, step, solver), True,
+                         solver)
+        return
     numbers = given.of(problem)
     if isinstance(numbers, ball.Ball):
         steps = steps_for(problem, reference)
@@ -69,7 +79,27 @@ def _run(scene, numbers, step, scheme, accuracy):
     whole = simulator.get_mutable_context()
     context = plant.GetMyMutableContextFromRoot(whole)
     force(whole)
-    again = _beginning(plant, context, turning, joint, numbers)
+
+    def state():
+        if isinstance(numbers, pendulum.Pendulum):
+            return numbers.state((joint.get_angle(context), joint.get_angular_rate(context)))
+        return numbers.state(_turned(plant, context, turning, isinstance(numbers, ball.Ball)))
+    return _advancing(simulator, diagram, _beginning(plant, context, turning, joint, numbers),
+                      state)
+
+
+def _turned(plant, context, turning, in_world):
+    """Return q, and omega in axes of the world or of the body."""
+    pose = plant.EvalBodyPoseInWorld(context, turning)
+    quaternion = pose.rotation().ToQuaternion()
+    spin = plant.EvalBodySpatialVelocityInWorld(context, turning).rotational()
+    omega = spin if in_world else pose.rotation().matrix().T @ spin
+    return quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *omega
+
+
+def _advancing(simulator, diagram, again, state):
+    """Return the Run of a simulator; `again` goes back to the start."""
+    whole = simulator.get_mutable_context()
 
     def begin():
         whole.SetTime(0.0)
@@ -81,19 +111,48 @@ def _run(scene, numbers, step, scheme, accuracy):
             simulator.AdvanceTo(time)
         except RuntimeError as error:
             raise NotConverged(f'{NAME}: {str(error).splitlines()[0]}') from None
-
-    def state():
-        if isinstance(numbers, pendulum.Pendulum):
-            return numbers.state((joint.get_angle(context), joint.get_angular_rate(context)))
-        pose = plant.EvalBodyPoseInWorld(context, turning)
-        quaternion = pose.rotation().ToQuaternion()
-        spin = plant.EvalBodySpatialVelocityInWorld(context, turning).rotational()
-        omega = spin if isinstance(numbers, ball.Ball) else pose.rotation().matrix().T @ spin
-        return numbers.state((
-            quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w(), *omega))
     run = Run(begin, to, state)
     run.keeps = simulator, diagram
     return run
+
+
+def _touching(numbers, step, solver):
+    """Return the Run of a body with a surface."""
+    from pydrake.geometry import Cylinder, HalfSpace, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.plant import (
+        AddMultibodyPlantSceneGraph,
+        ContactModel,
+        CoulombFriction,
+        DiscreteContactApproximation,
+    )
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+    builder, a = DiagramBuilder(), numbers.radius
+    friction = CoulombFriction(numbers.mu, numbers.mu)
+    plant, _ = AddMultibodyPlantSceneGraph(builder, step)
+    plant.set_contact_model(ContactModel.kPoint)
+    plant.set_discrete_contact_approximation(getattr(DiscreteContactApproximation, solver))
+    turning = plant.AddRigidBody('body', _spatial(numbers.mass, np.zeros(3), numbers.inertia))
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -numbers.g])
+    shape = Cylinder(a, 2.0 * plane.THICK * a) if numbers.disk else Sphere(a)
+    plant.RegisterCollisionGeometry(
+        plant.world_body(), RigidTransform(), HalfSpace(), 'table', friction)
+    plant.RegisterCollisionGeometry(
+        turning, RigidTransform(numbers.middle), shape, 'body', friction)
+    plant.Finalize()
+    plant.set_penetration_allowance(DEEP * a)
+    plant.set_stiction_tolerance(CREEP)
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    x, y, z, w = numbers.start[:4]
+
+    def again():
+        plant.SetPositions(context, np.array([w, x, y, z, *numbers.place]))
+        plant.SetVelocities(context, np.array([*numbers.start[4:], *numbers.velocity]))
+    return _advancing(simulator, diagram, again, lambda: numbers.state(
+        _turned(plant, context, turning, True)))
 
 
 def _spatial(mass, arm, inertia):

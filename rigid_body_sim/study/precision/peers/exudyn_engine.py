@@ -13,7 +13,7 @@ import numpy as np
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.study.precision import inputs
-from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum, plane
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'Exudyn'
@@ -44,7 +44,17 @@ def _engine():
 
 
 def runners(problem, reference):
-    """Yield three of its methods."""
+    """Yield three of its methods; for a disk that rolls without slip, the implicit one."""
+    if plane.has_surface(problem.scene):
+        numbers, steps = plane.of(problem.scene), steps_for(problem, reference)
+        if not (numbers.rolls and numbers.disk):
+            raise RefusedError('ideal rolling of disks only; other contact is by penalties, '
+                               'whose sizes are left to its user')
+        for radius in (1.0, 0.9):
+            yield Runner(f'{NAME} generalized alpha', 'step', steps,
+                         lambda step, radius=radius: _rolling(numbers, step, radius), True,
+                         f'spectral radius {radius:g}')
+        return
     numbers = given.of(problem)
     if isinstance(numbers, ball.Ball):
         raise RefusedError('contact by penalties: their sizes are left to its user')
@@ -86,15 +96,33 @@ def _run(scene, numbers, scheme, step=None, tolerance=None):
     hinged = isinstance(numbers, pendulum.Pendulum)
     node, laws = (_hinged if hinged else _turning)(engine, system, scene, numbers)
     system.Assemble()
-    settings, data = _settings(engine, step, tolerance), system.systemData
-    solver, first = getattr(engine.DynamicSolverType, scheme), engine.ConfigurationType.Initial
-    start = data.GetODE2Coordinates(first), data.GetODE2Coordinates_t(first)
+    settings = _settings(engine, step, tolerance)
+    begin, to = _solving(engine, system, settings, getattr(engine.DynamicSolverType, scheme), step)
+
+    def value(kind):
+        return np.array(system.GetNodeOutput(node, getattr(engine.OutputVariableType, kind)))
+
+    def state():
+        if hinged:
+            return numbers.state((float(value('Coordinates')), float(value('Coordinates_t'))))
+        return numbers.state((*_quaternion(value('RotationMatrix').reshape(3, 3)),
+                              *value('AngularVelocityLocal')))
+    run = Run(begin, to, state)
+    run.keeps = container, laws
+    return run
+
+
+def _solving(engine, system, settings, solver, step):
+    """Return `start` and `to` of the Run of an assembled system; step is None if controlled."""
+    data, first = system.systemData, engine.ConfigurationType.Initial
+    kinds = 'ODE2Coordinates', 'ODE2Coordinates_t', 'ODE2Coordinates_tt', 'AECoordinates'
+    start = {kind: getattr(data, f'Get{kind}')(first) for kind in kinds}
     now, done = 0.0, 0
 
     def begin():
         nonlocal now, done
-        data.SetODE2Coordinates(start[0], first)
-        data.SetODE2Coordinates_t(start[1], first)
+        for kind, values in start.items():
+            getattr(data, f'Set{kind}')(values, first)
         now, done = 0.0, 0
 
     def to(time):
@@ -112,17 +140,41 @@ def _run(scene, numbers, scheme, step=None, tolerance=None):
         except engine.ExudynError as error:
             raise NotConverged(f'{NAME}: {str(error).splitlines()[0]}') from None
         now = time
+    return begin, to
 
-    def value(kind):
-        return np.array(system.GetNodeOutput(node, getattr(engine.OutputVariableType, kind)))
+
+def _rolling(numbers, step, radius):
+    """Return the Run of a disk that rolls without slip; `radius` is the spectral one."""
+    from exudyn.utilities import RigidBodyInertia
+    engine = _engine()
+    container = engine.SystemContainer()
+    system = container.AddSystem()
+    ground = system.CreateGround()
+    q, omega = numbers.start[:4], numbers.start[4:]
+    one = system.CreateRigidBody(
+        inertia=RigidBodyInertia(mass=numbers.mass, inertiaTensor=numbers.inertia),
+        nodeType=engine.NodeType.RotationEulerParameters, referencePosition=numbers.place.tolist(),
+        referenceRotationMatrix=np.array(matrix(*q)), initialVelocity=numbers.velocity.tolist(),
+        initialAngularVelocity=omega.tolist(), gravity=[0.0, 0.0, -numbers.g])
+    system.CreateRollingDisc(
+        bodyNumbers=[ground, one], axisPosition=numbers.middle.tolist(), axisVector=[0, 0, 1],
+        planePosition=[0, 0, 0], planeNormal=[0, 0, 1], discRadius=numbers.radius)
+    system.Assemble()
+    settings = _settings(engine, step, None)
+    settings.timeIntegration.generalizedAlpha.spectralRadius = radius
+    # where Newton's method fails at a coarse step, ever shorter ones would take hours
+    settings.timeIntegration.adaptiveStep = False
+    begin, to = _solving(
+        engine, system, settings, engine.DynamicSolverType.GeneralizedAlpha, step)
 
     def state():
-        if hinged:
-            return numbers.state((float(value('Coordinates')), float(value('Coordinates_t'))))
+        def value(kind):
+            return np.array(system.GetObjectOutputBody(
+                one, getattr(engine.OutputVariableType, kind)))
         return numbers.state((*_quaternion(value('RotationMatrix').reshape(3, 3)),
-                              *value('AngularVelocityLocal')))
+                              *value('AngularVelocity')))
     run = Run(begin, to, state)
-    run.keeps = container, laws
+    run.keeps = container
     return run
 
 

@@ -6,8 +6,9 @@ It also runs with 80-bit numbers.
 
 import numpy as np
 
-from rigid_body_sim.study.precision.peers import ball, given, pendulum
-from rigid_body_sim.study.precision.runner import TOLERANCES, Run, Runner
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.study.precision.peers import ball, given, pendulum, plane
+from rigid_body_sim.study.precision.runner import TOLERANCES, RefusedError, Run, Runner
 
 NAME = 'heyoka'
 
@@ -19,7 +20,14 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield heyoka in doubles and, except for a ball, in 80-bit numbers."""
+    """Yield heyoka in doubles and, except for contact, in 80-bit numbers."""
+    if plane.has_surface(problem.scene):
+        body = plane.of(problem.scene)
+        if not body.rolls:
+            raise RefusedError('slip that dies on the way: the harness gives it rolling only')
+        yield Runner(NAME, 'tolerance', TOLERANCES,
+                     lambda tolerance: _on_a_plane(body, tolerance), True)
+        return
     numbers = given.of(problem)
     made = _rolling if isinstance(numbers, ball.Ball) else smooth_run
     yield Runner(NAME, 'tolerance', TOLERANCES,
@@ -47,6 +55,65 @@ def smooth_run(numbers, tolerance, number):
     def to(time):
         integrator.propagate_until(number(time))
     return Run(begin, to, lambda: numbers.state(integrator.state.astype(float)))
+
+
+def _on_a_plane(body, tolerance):
+    """Return the Run of a body that rolls on a plane without slip.
+
+    The unknowns are q and the angular momentum M about the point of contact, in body axes. With r
+    from the centre of mass to that point, s = r less the constant part, and the vertical gamma:
+    M = (I + m (r^2 - r r^T)) omega, M' = M x omega + m s' x (omega x r) + m g r x gamma.
+    """
+    import heyoka
+    variables = heyoka.make_vars('x', 'y', 'z', 'w', 'm1', 'm2', 'm3')
+    x, y, z, w, *M = variables
+    gamma = np.array([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z])
+    n = np.array(heyoka.make_vars('n1', 'n2', 'n3'))
+    lowest = _lowest(body, n)
+    there = dict(zip(n, gamma))
+    s = np.array([heyoka.subs(one, there) for one in lowest])
+    r = body.middle + s
+    heavy = _heavy(body, r)
+    across = np.array([np.cross(heavy[1], heavy[2]), np.cross(heavy[2], heavy[0]),
+                       np.cross(heavy[0], heavy[1])])
+    omega = across @ M / (heavy[0] @ across[0])    # the inverse of a symmetric matrix
+    slope = np.cross(gamma, omega)
+    moved = np.array([sum(heyoka.subs(heyoka.diff(one, along), there) * rate
+                          for along, rate in zip(n, slope)) for one in lowest])
+    rates = (np.cross(M, omega) + body.mass * np.cross(moved, np.cross(omega, r))
+             + body.mass * body.g * np.cross(r, gamma))
+    w1, w2, w3 = omega
+    turn = [0.5 * (w * w1 + y * w3 - z * w2), 0.5 * (w * w2 + z * w1 - x * w3),
+            0.5 * (w * w3 + x * w2 - y * w1), -0.5 * (x * w1 + y * w2 + z * w3)]
+
+    def arm(q):
+        vertical = np.array(rotate_back(*q, 0.0, 0.0, 1.0))
+        return _heavy(body, body.middle + np.array(_lowest(body, vertical)))
+    start = np.concatenate([body.start[:4], arm(body.start[:4]) @ body.in_body()])
+    integrator = heyoka.taylor_adaptive(
+        list(zip(variables, [*turn, *rates])), start, tol=tolerance)
+
+    def begin():
+        integrator.time = 0.0
+        integrator.state[:] = start
+
+    def state():
+        q = integrator.state[:4] / np.linalg.norm(integrator.state[:4])
+        return *q, *np.linalg.solve(arm(q), integrator.state[4:])
+    return Run(begin, integrator.propagate_until, state)
+
+
+def _lowest(body, n):
+    """Return the lowest point of a surface from its middle, for a vertical n in body axes."""
+    if not body.disk:
+        return [-body.radius * one for one in n]
+    flat = (n[0] * n[0] + n[1] * n[1]) ** 0.5
+    return [-body.radius * n[0] / flat, -body.radius * n[1] / flat, 0.0 * n[2]]
+
+
+def _heavy(body, r):
+    """Return the inertia about the point of contact r, body axes."""
+    return body.inertia + body.mass * ((r @ r) * np.eye(3) - np.outer(r, r))
 
 
 def _rolling(numbers, tolerance, _):

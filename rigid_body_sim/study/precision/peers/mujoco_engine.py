@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """MuJoCo: RK4, and its default semi-implicit Euler.
 
-All steps run in one call, so the loop is in C. A ball meets the table by MuJoCo's own contact.
+All steps run in one call, so the loop is in C. A ball, or a body with a surface, meets the table
+by MuJoCo's own contact.
 """
+
+import itertools
 
 import numpy as np
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum, plane
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'MuJoCo'
@@ -23,6 +26,14 @@ SITE = '<site name="{0}" pos="{1}"/>'
 TENDON = ('<tendon><spatial stiffness="{0!r}" springlength="{1!r}"><site site="at"/>'
           '<site site="anchor"/></spatial></tendon>')
 TABLE = '<geom type="plane" size="0 0 1" friction="{0!r} 0 0"/>'
+SOFT = 2.0
+"""Time constant of a contact in steps, the least it takes; the error grows in proportion to it."""
+SURFACE = """<mujoco><option integrator="{integrator}" timestep="{step!r}" \
+gravity="0 0 {gravity!r}" cone="elliptic" impratio="{ratio!r}"/>
+<default><geom friction="{mu!r} 0 0" condim="3" solref="{soft!r} 1" solimp="0.99 0.9999 1e-5"/>\
+</default><worldbody><geom type="plane" size="0 0 1"/><body><freejoint/>\
+<inertial pos="0 0 0" mass="{mass!r}" fullinertia="{inertia}"/>\
+<geom type="{shape}" size="{size}" pos="{middle}"/></body></worldbody></mujoco>"""
 BALL = '<geom type="sphere" size="{1!r}" friction="{0!r} 0 0"/>'
 
 
@@ -33,7 +44,10 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield MuJoCo with both of its methods."""
+    """Yield MuJoCo with both of its methods; for a body with a surface, with what users set."""
+    if plane.has_surface(problem.scene):
+        yield from _on_a_plane(plane.of(problem.scene), steps_for(problem, reference))
+        return
     numbers = given.of(problem)
     if isinstance(numbers, body.Body):
         numbers.refuse_what_joints_lack()
@@ -82,8 +96,11 @@ def _text(scene, numbers, integrator, step):
         anchor=anchor, tendon=tendon,
         mass=scene.body.mass, origin=_spaced(origin),
         attitude=_spaced((attitude[3], *attitude[:3])), place=_spaced(arm),
-        inertia=_spaced(inertia[pair]
-                        for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))))
+        inertia=_six(inertia))
+
+
+def _six(inertia):
+    return _spaced(inertia[pair] for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
 
 
 def _spaced(values):
@@ -91,26 +108,13 @@ def _spaced(values):
 
 
 def _run(scene, numbers, integrator, step):
-    """Return the Run of a scene.
-
-    More than forty lines: what builds the model, and what runs it, share the objects of the peer.
-    """
-    import mujoco
-    try:
-        model = mujoco.MjModel.from_xml_string(_text(scene, numbers, integrator, step))
-    except ValueError as error:
-        raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
-    data = mujoco.MjData(model)
-    # otherwise MuJoCo writes a file into the current folder
-    mujoco.set_mju_user_warning(lambda text: None)
+    """Return the Run of a scene."""
+    model, data = _made(_text(scene, numbers, integrator, step))
     turns = isinstance(numbers, body.Body)
     if turns:
         model.dof_damping[-3:] = numbers.damping[0, 0]
-    done = 0
 
-    def begin():
-        nonlocal done
-        mujoco.mj_resetData(model, data)
+    def again():
         if turns:
             x, y, z, w = numbers.start[:4]
             data.qpos[-4:] = w, x, y, z
@@ -124,6 +128,70 @@ def _run(scene, numbers, integrator, step):
             x, y, z, w, *omega = numbers.start[:7]
             data.qpos[3:] = w, x, y, z
             data.qvel[:] = *numbers.start[7:], 0.0, *rotate_back(x, y, z, w, *omega)
+
+    def state():
+        if isinstance(numbers, pendulum.Pendulum):
+            return numbers.state((data.qpos[0], data.qvel[0]))
+        return numbers.state(_turned(data, isinstance(numbers, ball.Ball)))
+    return _stepping(model, data, step, again, state)
+
+
+def _on_a_plane(numbers, steps):
+    """Yield the Runners of a body with a surface.
+
+    They differ in the integrator and in how much stiffer friction is than the normal force.
+    """
+    for integrator, ratio in itertools.product(('RK4', 'implicitfast'), (1.0, 100.0)):
+        yield Runner(NAME, 'step', steps,
+                     lambda step, integrator=integrator, ratio=ratio: _touching(
+                         numbers, step, integrator, ratio),
+                     True, f'{integrator}, impratio {ratio:g}')
+
+
+def _touching(numbers, step, integrator, ratio):
+    """Return the Run of a body with a surface."""
+    a = numbers.radius
+    model, data = _made(SURFACE.format(
+        integrator=integrator, step=step, gravity=-numbers.g, ratio=ratio,
+        mu=numbers.mu, soft=SOFT * step, mass=numbers.mass, inertia=_six(numbers.inertia),
+        shape='cylinder' if numbers.disk else 'sphere', middle=_spaced(numbers.middle),
+        size=_spaced((a, plane.THICK * a) if numbers.disk else (a,))))
+    x, y, z, w = numbers.start[:4]
+
+    def again():
+        data.qpos[:] = *numbers.place, w, x, y, z
+        data.qvel[:] = *numbers.velocity, *numbers.in_body()
+    return _stepping(model, data, step, again, lambda: numbers.state(_turned(data, True)))
+
+
+def _made(text):
+    """Return the model of a text, and its data."""
+    import mujoco
+    try:
+        model = mujoco.MjModel.from_xml_string(text)
+    except ValueError as error:
+        raise RefusedError(f'it refuses the body: {str(error).splitlines()[0]}') from None
+    # otherwise MuJoCo writes a file into the current folder
+    mujoco.set_mju_user_warning(lambda text: None)
+    return model, mujoco.MjData(model)
+
+
+def _turned(data, in_world):
+    """Return q, and omega in axes of the world or of the body."""
+    w, x, y, z = data.qpos[-4:]
+    omega = data.qvel[-3:]
+    return x, y, z, w, *(rotate(x, y, z, w, *omega) if in_world else omega)
+
+
+def _stepping(model, data, step, again, state):
+    """Return the Run of a loop of steps; `again` goes back to the start."""
+    import mujoco
+    done = 0
+
+    def begin():
+        nonlocal done
+        mujoco.mj_resetData(model, data)
+        again()
         done = 0
 
     def to(time):
@@ -135,13 +203,4 @@ def _run(scene, numbers, integrator, step):
             raise NotConverged(
                 f'{NAME}: at a step of {step:.3g} s it finds NaN and starts anew from its first '
                 'pose, with a warning')
-
-    def state():
-        if isinstance(numbers, pendulum.Pendulum):
-            return numbers.state((data.qpos[0], data.qvel[0]))
-        w, x, y, z = data.qpos[-4:]
-        omega = data.qvel[-3:]
-        return numbers.state((
-            x, y, z, w,
-            *(rotate(x, y, z, w, *omega) if isinstance(numbers, ball.Ball) else omega)))
     return Run(begin, to, state)

@@ -10,7 +10,7 @@ import tempfile
 import numpy as np
 
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.study.precision.peers import ball, body, given, pendulum
+from rigid_body_sim.study.precision.peers import ball, body, given, pendulum, plane
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner, steps_for
 
 NAME = 'PyBullet'
@@ -28,7 +28,13 @@ def version():
 
 
 def runners(problem, reference):
-    """Yield its only method."""
+    """Yield its only method; for a body with a surface, with what users set."""
+    if plane.has_surface(problem.scene):
+        numbers, steps = plane.of(problem.scene), steps_for(problem, reference)
+        for erp in (0.0, 0.2):
+            yield Runner(NAME, 'step', steps,
+                         lambda step, erp=erp: _touching(numbers, step, erp), True, f'erp {erp:g}')
+        return
     numbers = given.of(problem)
     if isinstance(numbers, body.Body) and numbers.inner:
         raise RefusedError('internal dissipation: it has no such effect')
@@ -149,20 +155,43 @@ def _rolling(scene, numbers, step):
     It multiplies the two coefficients of friction.
     """
     engine, world = _engine(step, numbers.g)
+    shape = engine.createCollisionShape(engine.GEOM_SPHERE, radius=numbers.radius, **world)
+    start = [0.0, 0.0, numbers.radius], [*numbers.start[7:], 0.0]
+    return _on_a_table(engine, world, step, numbers, shape, scene.body.mass,
+                       scene.body.about_center.moments, start)
+
+
+def _touching(numbers, step, erp):
+    """Return the Run of a body with a surface.
+
+    `erp` is the share of an error of the contact that a step corrects. More iterations of its
+    solver than the default change no error.
+    """
+    engine, world = _engine(step, numbers.g)
+    engine.setPhysicsEngineParameter(erp=erp, contactERP=erp, frictionERP=erp, **world)
+    a = numbers.radius
+    settings = {'radius': a, 'collisionFramePosition': numbers.middle.tolist(), **world}
+    shape = (engine.createCollisionShape(
+                 engine.GEOM_CYLINDER, height=2.0 * plane.THICK * a, **settings)
+             if numbers.disk else engine.createCollisionShape(engine.GEOM_SPHERE, **settings))
+    return _on_a_table(engine, world, step, numbers, shape, numbers.mass,
+                       np.diag(numbers.inertia), (numbers.place, numbers.velocity))
+
+
+def _on_a_table(engine, world, step, numbers, shape, mass, moments, start):
+    """Return the Run of a shape on a plane, from its place and its velocity (start)."""
     table = engine.createMultiBody(
         0.0, engine.createCollisionShape(engine.GEOM_PLANE, **world), **world)
     engine.changeDynamics(table, -1, lateralFriction=1.0, restitution=0.0, **world)
-    one = engine.createMultiBody(
-        scene.body.mass,
-        engine.createCollisionShape(engine.GEOM_SPHERE, radius=numbers.radius, **world), **world)
-    _undamped(engine, world, one, scene.body.about_center.moments, lateralFriction=numbers.mu,
-              rollingFriction=0.0, spinningFriction=0.0, restitution=0.0)
-    x, y, z, w, wx, wy, wz, vx, vy = numbers.start.tolist()
+    one = engine.createMultiBody(mass, shape, **world)
+    _undamped(engine, world, one, moments, lateralFriction=numbers.mu, rollingFriction=0.0,
+              spinningFriction=0.0, restitution=0.0)
+    place, velocity = ([float(x) for x in vector] for vector in start)
+    q, omega = numbers.start[:4].tolist(), numbers.start[4:7].tolist()
 
     def again():
-        engine.resetBasePositionAndOrientation(
-            one, [0.0, 0.0, numbers.radius], [x, y, z, w], **world)
-        engine.resetBaseVelocity(one, [vx, vy, 0.0], [wx, wy, wz], **world)
+        engine.resetBasePositionAndOrientation(one, place, q, **world)
+        engine.resetBaseVelocity(one, velocity, omega, **world)
 
     def state():
         return numbers.state((*engine.getBasePositionAndOrientation(one, **world)[1],
