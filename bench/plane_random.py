@@ -13,9 +13,9 @@ films of air, drag, springs, strikes, expressions; starts in flight, sliding and
 The truth shares no formula with the package: Newton and Euler in the world frame with 64-bit
 mantissas, its own contact and its own events (random_scenes/plane_truth.py). It says where it
 does not know: low rings, grazes, several directions in which a slip may begin, and events that
-half an ulp decides. `auto`, dop8 and taylor run each scene at two accuracies in plain Python (the
-bits are the same), in a process of its own. With --keep a run that was stopped resumes. Exit 1
-unless in each run
+half an ulp decides. `auto`, dop8, taylor and gauss16 run each scene at two accuracies in plain
+Python (the bits are the same), in a process of its own. With --keep a run that was stopped
+resumes. Exit 1 unless in each run
 
     the error at 24 times is at most max(asked, 3 floor), for `auto`; a named method may tell more,
     the expected error is within a factor of 3 of max(error, floor), or nothing is told,

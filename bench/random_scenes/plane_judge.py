@@ -16,7 +16,7 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACIES = 1e-6, 1e-11
-NAMED = 'dop8', 'taylor'
+NAMED = 'dop8', 'taylor', 'gauss16'
 LOOKS = 24
 COPIES = 3               # starts moved by half an ulp in each number, with random signs,
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 10      # times this

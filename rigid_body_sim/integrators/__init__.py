@@ -40,10 +40,11 @@ def runnable(scene):
     They find the view that they need in every effect, allow the heat that the effects make, know
     the time and place of their stages if an effect depends on them, and stop at kinks if an effect
     has some. No method sees an effect that is only an impulse. On the table only methods that
-    declare TABLE run; on a plane the general method, and taylor where it has series of the phases.
+    declare TABLE run; on a plane the general method, and where the phases have equations of their
+    own for them taylor and gauss16.
     """
     if scene.constraint.mechanism is Mechanism.PLANE:
-        return [GENERAL.NAME, taylor.NAME] if has_phases(scene) else [GENERAL.NAME]
+        return [GENERAL.NAME, taylor.NAME, gauss16.NAME] if has_phases(scene) else [GENERAL.NAME]
     if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]
     effects = [effect for effect in scene.effects

@@ -65,6 +65,7 @@ def refusal(scene):
 def has_phases(scene):
     """Return whether the phases of a body on a plane have series (contact_series.py).
 
+    These are the ones that contact_lanes.py has, too.
     All that acts besides the contact is uniform fields, and the contact has neither dry rolling
     friction nor a patch.
     """

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Family of the collocation methods: gauss16.
 
+On a plane its steps are those of marching/contact_gauss_step.py.
+
 The kernels that depend on the number of unknowns are made as source text for gauss_march.py. Loops
 over the eight stages are the inner ones, on arrays in which the stages of an unknown lie side by
 side: the compiler makes vector code of them without being allowed to reorder any sum.
@@ -13,12 +15,13 @@ import numpy as np
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations import equations as general
 from rigid_body_sim.integrators.equations.relaxation import stiff_relaxations
-from rigid_body_sim.integrators.families.one_step import bind  # noqa: F401
+from rigid_body_sim.integrators.families import one_step
 from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
 from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
 from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ASKS = {'accuracy': (), 'step': ()}
 TABLE = False
@@ -31,6 +34,17 @@ RELAXED_FLOOR = 2.0 ** -39  # the same where slopes of the stages take the place
 RELAXED_SETTLED = 2.0 ** -46
 CLOCK = 2.0 ** -50          # share of the time that is rounding
 TERMS = 2 * STAGES + 1      # polynomials of a curve: P_0 ... P_16
+
+
+def bind(method, stepped):
+    """Return the method's kernels on the equations of a scene."""
+    if stepped.scene.constraint.mechanism is Mechanism.PLANE:
+        # only now: a dozen modules of contact, which no other scene needs
+        from rigid_body_sim.integrators.marching import contact, contact_gauss
+        if stepped.wrench:
+            return contact.OnPlane(stepped.scene, method, stepped.wrench, stepped.step)
+        return contact_gauss.OnPlaneByGauss(stepped.scene, method, stepped.step)
+    return one_step.bind(method, stepped)
 
 
 class Equations(general.Equations):

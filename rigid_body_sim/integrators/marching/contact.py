@@ -40,8 +40,8 @@ def march_of(rate, step):
     """Return contact_march.py bound to rates, 'module:rate', and to a module of steps."""
     zero = specialise(contact_zero, rate=rate, step_from=f'{step}:step_from').__name__
     return specialise(contact_march, rate=rate, step_from=f'{step}:step_from',
-                      error_of=f'{step}:error_of', ORDER=f'from {step} import ORDER\n',
-                      first_zero=f'{zero}:first_zero')
+                      error_of=f'{step}:error_of', longest=f'{step}:longest',
+                      ORDER=f'from {step} import ORDER\n', first_zero=f'{zero}:first_zero')
 
 
 class OnPlane:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Template: march a convex body on a plane through one phase, to the event that ends it.
 
-It is bound to the rates of equations/contact_rates.py, to steps (contact_step.py, or
-contact_series_step.py) and to their order, and to contact_zero.py.
+It is bound to the rates of equations/contact_rates.py, to steps (contact_step.py,
+contact_series_step.py or contact_gauss_step.py) and to their order, and to contact_zero.py.
 
 A phase is an array of points: the unknowns, and what their sums have lost. The sizes of all steps
 are kept beside it, so that a step is made again with the same bits. The front is the last point of
@@ -36,8 +36,9 @@ from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.surfaces import TORUS
 
 rate = UNBOUND           # contact_rates.py
-step_from = UNBOUND      # contact_step.py, contact_series_step.py
+step_from = UNBOUND      # contact_step.py, contact_series_step.py, contact_gauss_step.py
 error_of = UNBOUND
+longest = UNBOUND
 ORDER = UNBOUND
 first_zero = UNBOUND     # contact_zero.py
 
@@ -130,7 +131,7 @@ def march(p, w, phase, sizes, front, meta, target):
             if meta[FADED] > STALLED:
                 allowed += min(PACED * h * meta[RATE] * p[SWIFT], FADES * w[0, PACE] / p[SWIFT])
             good = error <= allowed
-            planned = h * _factor(error, allowed)
+            planned = min(h * _factor(error, allowed), longest(w, h))
             if good:
                 break
             h = planned
@@ -243,7 +244,7 @@ def _falls(w, k):
 
     It does so between two stages only where it falls at first, and comes close: the stages of
     dop8 are at most 0.27 of a step apart, so that a parabola which touches zero has a stage below
-    a fourteenth of its larger end.
+    a fourteenth of its larger end; those of the other methods are closer.
     """
     begin, end = w[0, WATCHED + k], w[END, WATCHED + k]
     least = end

@@ -126,6 +126,12 @@ def _sample(p, w, y, S, h):
     return ends
 
 
+@compiled_inline
+def longest(w, h):
+    """Return the longest step that may follow one of size h: any."""
+    return math.inf
+
+
 @compiled
 def error_of(w, h, scales):
     """Return the estimated error of the step in the rows, as contact_step.error_of does.

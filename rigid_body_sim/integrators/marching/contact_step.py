@@ -146,6 +146,12 @@ def weight_of(n, scales):
     return turning if n == TIME else 1.0
 
 
+@compiled_inline
+def longest(w, h):
+    """Return the longest step that may follow one of size h: any."""
+    return math.inf
+
+
 @compiled
 def error_of(w, h, scales):
     """Return the estimated error of the step in the rows, as an angle (rad).

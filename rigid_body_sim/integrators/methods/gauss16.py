@@ -9,6 +9,10 @@ nodes c_i. The equations of the stages, Y_i = y + h sum_j a_ij f(Y_j), are solve
 one product with the matrix a, both in the vector unit of the processor; it costs about a fifth of
 a step of dop8, and a step of two radians takes about a dozen of them.
 
+A body on a plane goes by it where it rolls or slides under uniform fields, sliding friction,
+viscous rolling friction and a film of air (marching/contact_gauss.py); flights, and spans under a
+held wrench, are those of dop8.
+
 Symmetric; a converged step is symplectic and keeps quadratic invariants, so errors of conservative
 scenes grow in proportion to the time. Caveat: substitution converges for steps of a few radians at
 most, whatever the accuracy: the method is not for stiff scenes, except those in which only the

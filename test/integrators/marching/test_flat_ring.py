@@ -256,7 +256,7 @@ def test_a_disk_that_has_come_to_lie_flat_slides_on_its_face_when_struck(accurac
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize('method', ['dop8', 'taylor'])
+@pytest.mark.parametrize('method', ['dop8', 'taylor', 'gauss16'])
 def test_ideal_friction_holds_a_flat_hoop_by_all_of_its_rim(method):
     """It went on about one point of its rim, inclined by 1e-10 rad, and stopped by chance."""
     sim = Simulation(ring('hoop: {radius: 0.02}', initial='{euler_zyz: [0.3, 5e-11, 0.2]}'),

@@ -763,7 +763,7 @@ def test_the_spin_of_a_patch_dies_on_a_slope_when_its_quadrature_says(patch, spi
 
 
 @pytest.mark.without_numba
-@pytest.mark.parametrize('method', ['dop8', 'taylor'])
+@pytest.mark.parametrize('method', ['dop8', 'taylor', 'gauss16'])
 @pytest.mark.parametrize(('mu', 'name'), [(0.1, 'sliding began'), (0.4, 'rolling began')])
 def test_a_slip_that_turns_round_does_not_roll(method, mu, name):
     """A ball slides up a slope of tan a = 1, and friction can hold it there if mu > 2/7.

@@ -37,7 +37,7 @@ def landed(thin, angle, method):
     return multiply(-x, -y, -z, w, *simulation.state.orientation)
 
 
-@pytest.mark.parametrize('method', ['dop8', 'taylor'])
+@pytest.mark.parametrize('method', ['dop8', 'taylor', 'gauss16'])
 @pytest.mark.parametrize('thin', [1.0, 1e-3, 1e-6])
 def test_its_attitude_does_not_depend_on_which_way_it_faces(thin, method):
     """Impacts magnify half an ulp of the start some ten times."""

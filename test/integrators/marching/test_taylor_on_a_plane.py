@@ -6,6 +6,18 @@ import pathlib
 
 import numpy as np
 import pytest
+from convex_scenes import (
+    BODIES,
+    FALLING,
+    FILM,
+    HILL,
+    IDEAL,
+    LYING,
+    ROUGH,
+    SLOPE,
+    VISCOUS,
+    scene_of,
+)
 from near import near
 from soak import IN_SOAK
 
@@ -25,7 +37,7 @@ from rigid_body_sim.integrators.marching.contact_phase import MODE, SWIFT
 from rigid_body_sim.integrators.marching.contact_series import OnPlaneBySeries
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angles_between
-from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -35,30 +47,6 @@ ORDER, FRESH, SIZE = contact_series_step.ORDER, contact_series_step.FRESH, UNKNO
 ROLLED, FILMED = (UNKNOWNS.part('ledger').part(name).first for name in ('rolled', 'filmed'))
 GAP, OMEGA, PLACE, U = (UNKNOWNS.part(name).first for name in ('gap', 'omega', 'place', 'u'))
 LEDGER, GRIP = UNKNOWNS.part('ledger').first, ROW.part('watched').part('grip').first
-BODIES = {
-    'egg': '{mass: 0.06, inertia: [3.0e-5, 3.4e-5, 2.0e-5], center_of_mass: [0.001, 0, -0.002], '
-           'surface: {ellipsoid: {semi_axes: [0.022, 0.021, 0.03]}}}',
-    'ball': '{mass: 0.1, inertia: [[3.0e-5, 2.0e-6, -1.0e-6], [2.0e-6, 3.4e-5, 3.0e-6], '
-            '[-1.0e-6, 3.0e-6, 2.0e-5]], center_of_mass: [0.001, -0.002, -0.002], '
-            'surface: {sphere: {radius: 0.03}}}',
-    'ring': '{mass: 0.2, inertia: [3.0e-4, 3.0e-4, 5.0e-4], '
-            'surface: {torus: {radius: 0.05, tube: 0.01}}}',
-    'disk': '{mass: 0.2, shape: {disk: {radius: 0.05}}}'}
-FALLING = ('{position: [0, 0, 0.08], euler_zyz: [0.3, 1.1, 0.2], velocity: [0.2, 0.1, -0.3], '
-           'angular_velocity: [8, -5, 13]}')
-LYING = '{euler_zyz: [0.3, 0.9, 0.2], velocity: [0.3, 0.1, 0], angular_velocity: [3, -5, 33]}'
-ROUGH, IDEAL = 'sliding_friction: {mu: 0.2}', 'sliding_friction: {mu: .inf}'
-HILL = '{table: {normal: [0.1, -0.05, 1.0], restitution: 0.6}}'
-SLOPE = '{table: {normal: [0.1, -0.05, 1.0]}}'
-VISCOUS, FILM = 'rolling_friction: {viscous: 0.01}', 'air_film: {viscosity: 0.03}'
-
-
-def scene_of(body, effects=ROUGH, initial=LYING, table='table'):
-    """Return a scene under gravity."""
-    return parse_scene(f'scene: convex\nbody: {BODIES.get(body, body)}\nconstraint: {table}\n'
-                       f'effects: [gravity: {{g: 9.81}}, {effects}]\ninitial: {initial}\n')
-
-
 @IN_PYTHON
 @pytest.mark.parametrize('mode', [FLIGHT, ROLLING, SLIDING, GLIDING])
 @pytest.mark.parametrize('body', BODIES)
@@ -297,7 +285,7 @@ def test_where_the_paradox_may_be_met_and_fixed_steps_are_refused():
 @IN_PYTHON
 def test_auto_leaves_taylor_to_those_who_name_it():
     scene = scene_of('ball')
-    assert runnable(scene) == ['dop8', 'taylor']
+    assert runnable(scene) == ['dop8', 'taylor', 'gauss16']
     assert not measured.on_such(scene, 'taylor')
     assert measured.on_such(scene, 'dop8')
 

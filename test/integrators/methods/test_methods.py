@@ -88,10 +88,10 @@ def test_what_takes_a_step_needs_one(name):
         Stepped(scene, name, accuracy=1e-9)
 
 
-def test_a_convex_body_is_followed_by_the_general_method_and_taylor_alone(monkeypatch):
-    """Its step is written for dop8's coefficients: another method would run under a false name.
+def test_a_convex_body_is_followed_by_methods_with_steps_of_their_own_there_alone(monkeypatch):
+    """The general step is written for dop8's coefficients: another method would be a false name.
 
-    taylor has series of the phases of a top that slides and rolls and of a disk that viscous
+    taylor and gauss16 have phases of a top that slides and rolls and of a disk that viscous
     rolling friction slows, but not of one that dry rolling friction does.
     """
     other = types.ModuleType('other')
@@ -99,8 +99,8 @@ def test_a_convex_body_is_followed_by_the_general_method_and_taylor_alone(monkey
     monkeypatch.setitem(METHODS, 'other', other)
     ball, top, disk = map(load_scene, ('billiard_center', 'tippe_top', 'euler_disk'))
     assert runnable(ball) == ['dop8', 'other']
-    assert runnable(top) == ['dop8', 'taylor']
-    assert runnable(disk) == ['dop8', 'taylor']
+    assert runnable(top) == ['dop8', 'taylor', 'gauss16']
+    assert runnable(disk) == ['dop8', 'taylor', 'gauss16']
     assert runnable(load_scene('euler_disk', {
         'effects.rolling_friction': {'dry': 1e-4}})) == ['dop8']
     with pytest.raises(BadInput,
