@@ -22,6 +22,8 @@ from rigid_body_sim.integrators.marching import contact_march, contact_step, con
 from rigid_body_sim.integrators.marching.contact_course import PlaneCourse
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.effects.wrench import Wrench
 
 
@@ -117,3 +119,16 @@ class OnPlane:
     def course(self, stepped):
         """Return the course of a started solver."""
         return PlaneCourse(stepped, self)
+
+
+class UnderWeight(OnPlane):
+    """The same where nothing but uniform fields acts besides the contact, and no wrench."""
+
+    def __init__(self, scene, method, step):
+        super().__init__(scene, method, None, step)
+        x, y, z = rotate_back(*scene.constraint.axes, *scene.field)
+        self._weight = np.array(scaled(scene.body.mass, (x, y, z)))
+
+    def parameters(self, time):
+        """Return the parameters that hold just after a time (s); the last three are the weight."""
+        return np.concatenate((super().parameters(time), self._weight))

@@ -5,25 +5,21 @@ It takes the phases in which the body rolls or slides, the long ones. Flight, a 
 begun, a ring that is almost flat, and rest are those of dop8.
 """
 
-import numpy as np
-
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations import contact_lanes
 from rigid_body_sim.integrators.equations.contact_views import GLIDING, ROLLING, SLIDING
 from rigid_body_sim.integrators.marching import contact_gauss_step
-from rigid_body_sim.integrators.marching.contact import OnPlane, march_of
+from rigid_body_sim.integrators.marching.contact import UnderWeight, march_of
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
-from rigid_body_sim.numerics.rotations import rotate_back
-from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.painleve import may_meet_paradox
 from rigid_body_sim.scene.surfaces import KINDS
 
 
-class OnPlaneByGauss(OnPlane):
+class OnPlaneByGauss(UnderWeight):
     """The kernels and the numbers of one scene."""
 
     def __init__(self, scene, method, step):
-        super().__init__(scene, method, None, step)
+        super().__init__(scene, method, step)
         laws = scene.contact
         self._literals = {'kind': KINDS[scene.body.surface.kind], 'rolling': 0.0}
         self._literals |= {name: 0.0 for name in ('rolling_viscous', 'film')
@@ -33,12 +29,6 @@ class OnPlaneByGauss(OnPlane):
             ROLLING, SLIDING, GLIDING)
         self._marches = {}
         self.work_shape = contact_gauss_step.WORK_ROWS, contact_gauss_step.WIDTH
-        x, y, z = rotate_back(*scene.constraint.axes, *scene.field)
-        self._weight = np.array(scaled(scene.body.mass, (x, y, z)))
-
-    def parameters(self, time):
-        """Return the parameters that hold just after a time (s); the last three are the weight."""
-        return np.concatenate((super().parameters(time), self._weight))
 
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).

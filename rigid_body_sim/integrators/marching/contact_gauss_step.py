@@ -77,8 +77,11 @@ FEWEST, MOST = 4, 40         # sweeps before the change is looked at, and at mos
 COMFORTABLE = 20.0           # more sweeps cost more than the longer step saves
 GROWTH = 1.2                 # of a step: errors go with its 16th power
 ENOUGH = 2.0 ** -51          # a change after which the next one is rounding
-NOISE = 2.0 ** -40           # below it, changes that no longer fall are rounding
+NOISE, STALE = 2.0 ** -40, 3 # below it, so many changes that no longer fall are rounding
 ROUNDING = 2.0 ** -50        # share of the rates that is rounding
+# times the estimate that the error may be: the main motion hides harmonics of smaller amplitude
+# in the coefficients; a spinning egg erred by up to 20 times
+SAFETY = 64.0
 STILL = Coupled((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0))
 
 
@@ -150,7 +153,7 @@ def _solve(p, S, y, h):
     The change that a sweep makes is looked at in the last stage, each unknown beside its own size.
     """
     _turn(p, S, y, h)
-    smallest = math.inf
+    smallest, stale = math.inf, 0
     for sweep in range(1, MOST):
         before = load_line(S, NODES - 1)
         _hasten(p, S)
@@ -163,11 +166,11 @@ def _solve(p, S, y, h):
         _, spin, slip = _squares(now, STILL)
         change = (turned_by + (spun / spin if spin > 0.0 else spun)
                   + (slid / slip if slip > 0.0 else slid))
-        if sweep >= FEWEST and (change <= ENOUGH * ENOUGH
-                                or smallest <= change <= NOISE * NOISE):
+        stale = stale + 1 if smallest <= change <= NOISE * NOISE else 0
+        if sweep >= FEWEST and (change <= ENOUGH * ENOUGH or stale == STALE):
             S[SWEEPS] = sweep
             return True
-        smallest = change
+        smallest = min(smallest, change)
     return False
 
 
@@ -214,7 +217,7 @@ def longest(w, h):
 def error_of(w, h, scales):
     """Return the estimated error of the step in the rows, as contact_step.error_of does.
 
-    It is that of gauss_march.py, unknown by unknown.
+    It is that of gauss_march.py, with a margin.
     """
     S, size = w[LANES], 0.0
     for n in range(COUPLED):
@@ -241,4 +244,4 @@ def _error(S, first, end, weight, noise):
     square = math.sqrt(max(FALL_75 * FALL_75 * c7 / (c5 + noise),
                            FALL_64 * FALL_64 * c6 / (c4 + noise)))
     seventh = math.sqrt(max(c7, square * c6 / (FALL_7 * FALL_7)))
-    return UNSEEN * seventh * square * square * square * square * math.sqrt(square)
+    return SAFETY * UNSEEN * seventh * square * square * square * square * math.sqrt(square)

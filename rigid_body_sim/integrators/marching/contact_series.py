@@ -5,17 +5,13 @@ A slip that has just begun, whose direction is a finite difference, a ring that 
 rest are those of dop8.
 """
 
-import numpy as np
-
 from rigid_body_sim.compilation.templates import module_of, specialise
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators.equations import contact_series
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT, GLIDING, ROLLING, SLIDING
 from rigid_body_sim.integrators.marching import contact_series_step
-from rigid_body_sim.integrators.marching.contact import OnPlane, march_of
+from rigid_body_sim.integrators.marching.contact import UnderWeight, march_of
 from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER
-from rigid_body_sim.numerics.rotations import rotate_back
-from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.painleve import may_meet_paradox, painleve_bound
 from rigid_body_sim.scene.surfaces import KINDS
 
@@ -23,7 +19,7 @@ SERIES_OF = {FLIGHT: FLIGHT, ROLLING: ROLLING, SLIDING: SLIDING, GLIDING: SLIDIN
 """Phases that have series: those of which phase."""
 
 
-class OnPlaneBySeries(OnPlane):
+class OnPlaneBySeries(UnderWeight):
     """The kernels and the numbers of one scene.
 
     Raises
@@ -34,7 +30,7 @@ class OnPlaneBySeries(OnPlane):
     """
 
     def __init__(self, scene, method, step):
-        super().__init__(scene, method, None, step)
+        super().__init__(scene, method, step)
         mu = scene.contact.mu
         if may_meet_paradox(scene.body, mu):
             raise BadInput('integrator', f'taylor cannot run the scene {scene.name}: with '
@@ -48,12 +44,6 @@ class OnPlaneBySeries(OnPlane):
         self._flat = FILMY if self._friction.film else FLAT if rubs else FLATTER
         self.work_shape = (contact_series_step.WORK_ROWS,
                            contact_series.MORE if rubs else contact_series.MOST)
-        x, y, z = rotate_back(*scene.constraint.axes, *scene.field)
-        self._weight = np.array(scaled(scene.body.mass, (x, y, z)))
-
-    def parameters(self, time):
-        """Return the parameters that hold just after a time (s); the last three are the weight."""
-        return np.concatenate((super().parameters(time), self._weight))
 
     def kernels_of(self, mode, low=False):
         """Return the module that marches through a phase (contact_march.py).
