@@ -317,9 +317,11 @@ def _chosen(same, integrator, accuracy, step, horizon, settled, together):
         stiff = _stiff(scene)
         fit = [name for name in able if stiff <= set(METHODS[name].STIFF)]
         coarsest = ENDING if wobbles else math.inf
-        settle = functools.partial(settling.settle, scene, accuracy=min(accuracy, coarsest),
-                                   horizon=horizon, coarsest=coarsest)
-        settled = settled or settle(able=fit)
+
+        def settle(able):
+            return settling.settle(scene, able, min(accuracy, coarsest), horizon,
+                                   coarsest=coarsest)
+        settled = settled or settle(fit)
         if together:
             settled = _side_by_side(settled, settle, fit, accuracy)
         if closed and closed.expected_error <= (settled.expected_error or 0.0):    # None: untried
@@ -345,7 +347,7 @@ def _side_by_side(settled, settle, fit, accuracy):
     side_by_side = [name for name in fit if METHODS[name].FAMILY.LANES]
     if settled.method not in side_by_side and side_by_side:
         with contextlib.suppress(NotConverged):    # also where none was measured on such scenes
-            found = settle(able=side_by_side)
+            found = settle(side_by_side)
             # None: untried, as the table promises
             if (found.expected_error or 0.0) <= max(accuracy, settled.expected_error or 0.0):
                 return found

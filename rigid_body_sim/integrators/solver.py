@@ -104,7 +104,7 @@ class Stepped:
         self._may_wind = scene.wound.constraint != scene.constraint
         self._carried = scene.frame.path is not None
         self._may_leave_doubles = self._carried or step is not None
-        self._mechanics = parameters(scene) if self._may_leave_doubles else None
+        self._mechanics = parameters(scene) if step is not None else None
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -250,16 +250,18 @@ class Stepped:
         on_all_cores(side_by_side, len(starts), 8 * LANES)
 
     def _check(self, rows):
-        """Raise if a state, or its energy, is beyond what doubles hold.
+        """Raise if a state is beyond what doubles hold.
 
         So may be a pivot that moves, for which nothing is solved, and a body that is followed in
-        steps of one size, which no error makes smaller.
+        steps of one size, which no error makes smaller: its energy counts, too.
         """
         if not self._may_leave_doubles or np.abs(rows).max() < MODEST:
             return
-        diagnoses = np.empty((len(rows), DIAGNOSIS_SIZE))
-        energies(self.scene).diagnose_many(self._mechanics, rows, diagnoses)
-        finite = np.isfinite(rows).all(axis=1) & np.isfinite(diagnoses).all(axis=1)
+        finite = np.isfinite(rows).all(axis=1)
+        if self.step is not None:
+            diagnoses = np.empty((len(rows), DIAGNOSIS_SIZE))
+            energies(self.scene).diagnose_many(self._mechanics, rows, diagnoses)
+            finite &= np.isfinite(diagnoses).all(axis=1)
         if not finite.all():
             raise lost(self.method, self.scene, rows[~finite, TIME].min())
 
