@@ -53,7 +53,7 @@ ZERO = specialise(contact_zero, rate=f'{STEP.__name__}:rate',
                   step_from=f'{STEP.__name__}:step_from')
 KERNELS = specialise(contact_march, rate=f'{STEP.__name__}:rate',
                      step_from=f'{STEP.__name__}:step_from',
-                     error_of=f'{STEP.__name__}:error_of',
+                     error_of=f'{STEP.__name__}:error_of', longest=f'{STEP.__name__}:longest',
                      ORDER=f'from {STEP.__name__} import ORDER\n',
                      first_zero=f'{ZERO.__name__}:first_zero')
 ACCURACY = 1e-12
