@@ -27,7 +27,6 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     DRAG,
     EULER,
     OMEGA,
-    ORDER,
     UNKNOWNS,
     U,
     Unknowns,
@@ -36,6 +35,7 @@ from rigid_body_sim.integrators.marching.batch_lane import (
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     between_of,
+    fill,
     half_turn,
     restored,
     square_of,
@@ -91,15 +91,9 @@ def _products(o, sums, e, w, others):
 
 def _fill(o, row, dragged=False):
     """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
-    def e_of(order):
-        return row.coefficients(order, OF_DIRECTIONS)
-
-    def omega_of(order):
-        return row.coefficients(order, OF_OMEGA)
-
     def next_order(k, sums, constant):
-        e, w = e_of(k), omega_of(k) if dragged else ()
-        e1, e2 = _directions(e)
+        e1, e2 = _directions(row.coefficients(k, OF_DIRECTIONS))
+        w = row.coefficients(k, OF_OMEGA) if dragged else ()
         changes = [o.plus(sums[added], o.minus(sums[subtracted]))
                    for places in SIGNED for added, subtracted in places]
         for i in range(3):
@@ -118,20 +112,7 @@ def _fill(o, row, dragged=False):
         for i, change in enumerate(changes):
             row.put_coefficient(o.times(share, change), k, i)
 
-    none = [o.none()] * SUMS
-    first, first_rates = e_of(0), omega_of(0)
-    next_order(0, _products(o, none, first, first_rates, first_rates), True)
-
-    def order(k, _):
-        def pair(i, sums):
-            rest = o.place(k, -1, i)
-            return _products(o, sums, e_of(i), omega_of(i), omega_of(rest))
-        sums = o.repeat(1, k, none, pair)
-        newest = omega_of(k)
-        sums = _products(o, sums, e_of(0), omega_of(0), newest)
-        next_order(k, _products(o, sums, e_of(k), newest, omega_of(0)), False)
-        return []
-    o.repeat(1, ORDER, [], order)
+    fill(o, row, OF_DIRECTIONS, OF_OMEGA, SUMS, _products, next_order)
 
 
 def _unit(o, values, lost):

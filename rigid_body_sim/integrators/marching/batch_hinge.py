@@ -15,13 +15,13 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     CONSTANT,
     DRAG,
     OMEGA,
-    ORDER,
     U,
     Unknowns,
 )
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     between_of,
+    fill,
     half_turn,
     restored,
     square_of,
@@ -42,6 +42,12 @@ def unknowns(q, omega):
     return Unknowns((x, y, 0.0, 0.0, 0.0, 0.0), omega)
 
 
+def _products(o, sums, e, _, rates):
+    """Return the two sums of e x omega with one more pair of orders."""
+    (x, y), (to_x, to_y), (rate,) = e, sums, rates
+    return [o.gather(y, rate, to_x), o.gather(x, rate, to_y)]
+
+
 def _fill(o, row):
     """Fill the coefficients of orders 1 ... ORDER."""
     def next_order(k, turns, constant):
@@ -54,37 +60,16 @@ def _fill(o, row):
         for place, rate_of in ((X, to_x), (Y, o.minus(to_y)), (RATE, change)):
             row.put_coefficient(o.times(share, rate_of), k, place)
 
-    def products(sums, e, rate):
-        (x, y), (to_x, to_y) = e, sums
-        return o.gather(y, rate, to_x), o.gather(x, rate, to_y)
-
-    def e_of(order):
-        return row.coefficients(order, (X, Y))
-
-    def rate_of(order):
-        [rate] = row.coefficients(order, (RATE,))
-        return rate
-
-    none = o.none(), o.none()
-    next_order(0, products(none, e_of(0), rate_of(0)), True)
-
-    def order(k, _):
-        def pair(i, sums):
-            return list(products(sums, e_of(i), rate_of(o.place(k, -1, i))))
-        sums = o.repeat(1, k, list(none), pair)
-        sums = products(sums, e_of(0), rate_of(k))
-        next_order(k, products(sums, e_of(k), rate_of(0)), False)
-        return []
-    o.repeat(1, ORDER, [], order)
+    fill(o, row, (X, Y), (RATE,), 2, _products, next_order)
 
 
 def _unit(o, values, lost):
     """Return the unknowns with the direction of length 1, and what they lost."""
-    *e, rate = values
+    (*e, rate), (*gone, rate_lost) = values, lost
     short = o.times(o.everywhere(o.number(-0.5)), square_of(o, e, o.everywhere(o.number(-1.0))))
-    kept = [restored(o, own, o.gather(short, own, gone), gone)
-            for own, gone in zip(e, lost, strict=False)]
-    return [*(value for value, _ in kept), rate], [*(gone for _, gone in kept), lost[-1]]
+    kept = [restored(o, own, o.gather(short, own, left), left)
+            for own, left in zip(e, gone, strict=True)]
+    return [*(value for value, _ in kept), rate], [*(left for _, left in kept), rate_lost]
 
 
 def _attitude(o, row, values, h):

@@ -108,6 +108,44 @@ class Rows:
         return found
 
 
+def fill(o, row, attitude, omega, count, products, next_order):
+    """Fill the coefficients of orders 1 ... ORDER by Cauchy sums, which are loops.
+
+    The two terms with the newest coefficients are added after a loop, so that it need not wait for
+    them.
+
+    Parameters
+    ----------
+    attitude, omega : sequence of int
+        Unknowns whose coefficients the products take.
+    count : int
+        How many sums there are.
+    products : function (o, sums, attitude, omega, others)
+        Returns the sums with the products of attitude and omega of one order with omega of the
+        other, `others`.
+    next_order : function (k, sums, constant)
+        Writes the coefficients of the order k + 1; `constant` says whether k is 0.
+    """
+    def attitude_of(order):
+        return row.coefficients(order, attitude)
+
+    def omega_of(order):
+        return row.coefficients(order, omega)
+    none, first = [o.none()] * count, omega_of(0)
+    next_order(0, products(o, none, attitude_of(0), first, first), True)
+
+    def order(k, _):
+        def pair(i, sums):
+            rest = o.place(k, -1, i)
+            return products(o, sums, attitude_of(i), omega_of(i), omega_of(rest))
+        sums = o.repeat(1, k, none, pair)
+        newest = omega_of(k)
+        sums = products(o, sums, attitude_of(0), omega_of(0), newest)
+        next_order(k, products(o, sums, attitude_of(k), newest, omega_of(0)), False)
+        return []
+    o.repeat(1, ORDER, [], order)
+
+
 def half_turn(o, angle):
     """Return the vector part of the quaternion of a rotation vector, and its scalar part.
 

@@ -19,13 +19,13 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     DRAG,
     EULER,
     OMEGA,
-    ORDER,
     UNKNOWNS,
     Unknowns,
 )
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     between_of,
+    fill,
     restored,
     square_of,
     step_of,
@@ -59,12 +59,6 @@ def _products(o, sums, q, w, others):
 
 def _fill(o, row, dragged=False):
     """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
-    def q_of(order):
-        return row.coefficients(order, OF_Q)
-
-    def omega_of(order):
-        return row.coefficients(order, OF_OMEGA)
-
     def next_order(k, sums, constant):
         share = row.share(k)
         half, terms = o.times(o.everywhere(o.number(0.5)), share), iter(sums)
@@ -74,7 +68,7 @@ def _fill(o, row, dragged=False):
             if added is not None:
                 rate = o.plus(added, rate)
             row.put_coefficient(o.times(half, rate), k, i)
-        w = omega_of(k) if dragged else ()
+        w = row.coefficients(k, OF_OMEGA) if dragged else ()
         for i, own in enumerate(terms):
             rate = row(CONSTANT + i) if constant else o.none()
             for j, rates in enumerate(w):
@@ -82,20 +76,7 @@ def _fill(o, row, dragged=False):
             rate = o.gather(row(EULER + i), own, rate)
             row.put_coefficient(o.times(share, rate), k, OMEGA + i)
 
-    none = [o.none()] * (len(TERMS) + 3)
-    first, first_rates = q_of(0), omega_of(0)
-    next_order(0, _products(o, none, first, first_rates, first_rates), True)
-
-    def order(k, _):
-        def pair(i, sums):
-            rest = o.place(k, -1, i)
-            return _products(o, sums, q_of(i), omega_of(i), omega_of(rest))
-        sums = o.repeat(1, k, none, pair)
-        newest = omega_of(k)
-        sums = _products(o, sums, q_of(0), omega_of(0), newest)
-        next_order(k, _products(o, sums, q_of(k), newest, omega_of(0)), False)
-        return []
-    o.repeat(1, ORDER, [], order)
+    fill(o, row, OF_Q, OF_OMEGA, len(TERMS) + len(OF_OMEGA), _products, next_order)
 
 
 def _total(o, values):
