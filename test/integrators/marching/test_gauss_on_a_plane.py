@@ -162,7 +162,8 @@ def test_a_body_that_sticks_keeps_the_accuracy_that_is_asked(name, accuracy):
 
 
 @IN_PYTHON
-@pytest.mark.parametrize('friction', ['', VISCOUS, f'{FILM}, {VISCOUS}'])
+@pytest.mark.parametrize('friction', [
+    pytest.param('', marks=IN_SOAK), VISCOUS, pytest.param(f'{FILM}, {VISCOUS}', marks=IN_SOAK)])
 def test_the_ledger_balances_and_ticks_any_way_have_the_same_bits(friction):
     scene = scene_of('disk', f'{ROUGH}, {friction}', table=SLOPE)
     sims = [Simulation(scene, 'gauss16', 1e-11, horizon=1.0) for _ in range(3)]
