@@ -167,7 +167,8 @@ def main(*paths):
         begin = said.index(f'<!-- {name} -->\n') + len(f'<!-- {name} -->\n')
         said = said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):]
     page.write_text(said)
-    DOCS.joinpath('work_precision.json').write_text(json.dumps(_short(found)) + '\n')
+    kept = json.dumps(_short(found), separators=(',', ':'))
+    DOCS.joinpath('work_precision.json').write_text(kept + '\n')
     for name, chosen in (('work_precision', suite.QUICK),
                          ('work_precision_suite', set(suite.NAMES) - set(suite.QUICK)),
                          ('work_precision_plane', suite.ON_A_PLANE)):

@@ -6,7 +6,6 @@ was measured to meet the accuracy (measured.py), after trial runs on the scene i
 (settling.py).
 """
 
-import contextlib
 import functools
 import logging
 import math
@@ -20,7 +19,7 @@ from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.exact_forecast import of_exact
 from rigid_body_sim.choice.forecast import Forecast, missed
 from rigid_body_sim.compilation import jit
-from rigid_body_sim.errors import BadInput, NotConverged, nearest
+from rigid_body_sim.errors import BadInput, nearest
 from rigid_body_sim.integrators import GENERAL, METHODS, STEADY, runnable
 from rigid_body_sim.integrators.protocols import FINEST, Solver
 from rigid_body_sim.integrators.solver import Stepped
@@ -184,19 +183,22 @@ class Choice:
     def finer(self):
         """Return a Choice of the method with a finer tolerance, beside which its errors show.
 
-        It is this one in closed form but for what goes on where that does not hold.
+        It is None for a closed form that holds from every start, which has no tolerance.
 
         Raises
         ------
         BadInput
             Fixed steps have no tolerance; the tolerance is the finest already.
         """
+        if self.method == 'exact' and not self._asks:
+            return None
         if self.tolerance is None:
             raise BadInput('step', f'got {self.step!r}', 'an accuracy: fixed steps are not tried')
         finer = max(FINEST, FINER * self.tolerance)
         if finer == self.tolerance:
             raise BadInput('accuracy', f'takes a tolerance of {self.tolerance!r}',
                            'a coarser one: no finer run tells its error')
+        # in closed form the tolerance is that of the method that goes on where the form ends
         stepped = {} if self.method == 'exact' else {'_prototype': self._prototype.at(finer)}
         return replace(self, tolerance=finer, **stepped)
 
@@ -323,7 +325,7 @@ def _chosen(same, integrator, accuracy, step, horizon, settled, together):
                                    coarsest=coarsest)
         settled = settled or settle(fit)
         if together:
-            settled = _side_by_side(settled, settle, fit, accuracy)
+            settled = settling.side_by_side(settled, settle, fit, accuracy)
         if closed and closed.expected_error <= (settled.expected_error or 0.0):    # None: untried
             return closed
         method, tolerance, prototype = settled.method, settled.tolerance, settled.prototype
@@ -340,18 +342,6 @@ def _chosen(same, integrator, accuracy, step, horizon, settled, together):
     else:
         prototype = Stepped(scene, method, tolerance, step, horizon=horizon, wanted=accuracy)
     return Choice(scene, method, accuracy, step, horizon, tolerance, prototype, settled)
-
-
-def _side_by_side(settled, settle, fit, accuracy):
-    """Return the Settled choice of a method that takes bodies side by side, if one will do."""
-    side_by_side = [name for name in fit if METHODS[name].FAMILY.LANES]
-    if settled.method not in side_by_side and side_by_side:
-        with contextlib.suppress(NotConverged):    # also where none was measured on such scenes
-            found = settle(side_by_side)
-            # None: untried, as the table promises
-            if (found.expected_error or 0.0) <= max(accuracy, settled.expected_error or 0.0):
-                return found
-    return settled
 
 
 def _by_motion(scene, named, accuracy, horizon, settled):

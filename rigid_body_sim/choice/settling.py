@@ -11,7 +11,7 @@ from rigid_body_sim.choice import comparison, forecast, measured, runs
 from rigid_body_sim.choice.trial import HELPS, Trial
 from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.integrators import GENERAL
+from rigid_body_sim.integrators import GENERAL, METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.integrators.solver import Stepped
@@ -146,6 +146,30 @@ def settle(scene, able, accuracy, horizon, coarsest=math.inf):
     method, tolerance, promised = measured.pick(scene, others, 0.0, horizon)
     trial = kind(scene, accuracy, horizon, method, promised, PATIENCE[0], True)
     return _more_accurate(settled_by, best, trial, tolerance, coarsest)
+
+
+def side_by_side(settled, settle_on, able, accuracy):
+    """Return the Settled choice for many bodies: of a method that has them side by side, if any.
+
+    Parameters
+    ----------
+    settled : Settled
+        The choice for one body.
+    settle_on : function (names)
+        Settles on one of some methods.
+    able : list of str
+        The methods that can run the scene.
+    accuracy : float
+        rad.
+    """
+    together = [name for name in able if METHODS[name].FAMILY.LANES]
+    if settled.method not in together and together:
+        with contextlib.suppress(NotConverged):    # also where none was measured on such scenes
+            found = settle_on(together)
+            # None: untried, as the table promises
+            if (found.expected_error or 0.0) <= max(accuracy, settled.expected_error or 0.0):
+                return found
+    return settled
 
 
 def _settled(trial, tolerance):

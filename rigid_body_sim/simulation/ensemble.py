@@ -86,7 +86,7 @@ class Ensemble(Sequence):
         scene's own start needs: a body whose motion magnifies errors more may err by more than the
         accuracy, and shows it here. Bodies run again with a finer tolerance, which takes a little
         longer than the ensemble did; the error of a closed form is half an ulp of the angle
-        turned, without a run.
+        turned, without a run. The starts and the states must still be what they were.
 
         Raises
         ------
@@ -104,11 +104,11 @@ class Ensemble(Sequence):
         errors = np.zeros(len(self))
         for choice, bodies in self.choices:
             errors[bodies] = of_starts(choice.scene, starts[bodies], times.max(initial=0.0))
-            if choice.method == 'exact' and not choice.rests_on_start:
-                continue
             if choice.is_nearly:
                 errors[bodies] += choice.expected_error
             finer = choice.finer()
+            if finer is None:
+                continue
             for part in _blocks(len(bodies), len(times)):
                 here = bodies[part]
                 attitudes = np.empty((len(here), len(times), _width('orientation')))

@@ -250,6 +250,6 @@ def test_many_bodies_take_a_method_that_has_them_side_by_side_where_it_meets_the
     assert together.expected_error <= 1e-12
     # one that would miss it is not taken
     missed = settling.Settled('taylor', 1e-9, 1e-9, 0.0)
-    kept = choose_module._side_by_side(
+    kept = settling.side_by_side(
         alone.settled, lambda able: missed, ['gauss16', 'taylor'], 1e-12)
     assert kept is alone.settled

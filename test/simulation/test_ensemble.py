@@ -14,10 +14,12 @@ from rigid_body_sim import (
     parse_scene,
     scene_names,
 )
+from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.numerics.rotations import angles_between
 from rigid_body_sim.simulation import ensemble as module
 
+IN_KERNELS = pytest.mark.skipif(not HAVE_NUMBA, reason='takes two minutes without numba')
 DRIVEN = """
 scene: driven_in_the_world
 body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
@@ -221,6 +223,7 @@ def test_a_body_that_fails_is_named_by_its_place_among_all(monkeypatch):
         ensemble('tennis_racket', starts, [1e3], integrator='dop8', accuracy=1e-3)
 
 
+@IN_KERNELS
 def test_bodies_that_magnify_errors_are_told_by_their_expected_errors():
     """One of 64 starts near each other errs 75 times as much as is asked.
 
@@ -250,6 +253,7 @@ def test_the_expected_errors_of_a_closed_form_are_half_an_ulp_of_the_angle_turne
     np.testing.assert_allclose(found.expected_errors(), 2.0 ** -53 * (4.0 + turned), rtol=1e-13)
 
 
+@IN_KERNELS
 def test_a_body_has_the_closed_form_of_a_scene_nearly_its_own_where_that_meets_the_accuracy():
     """A slow top makes 1.6e-10 rad of a difference of moments of 1e-13, a fast one 6e-13."""
     scene = parse_scene(NEARLY_ROUND)

@@ -51,7 +51,8 @@ class Rates(NamedTuple):
 
 NODES = gauss_nodes.STAGES
 ORDER, STAGES = 2 * NODES, contact_step.STAGES
-normalise, weight_of, LARGE = contact_step.normalise, contact_step.weight_of, contact_step.LARGE
+add, normalise, weight_of, LARGE = (
+    contact_step.add, contact_step.normalise, contact_step.weight_of, contact_step.LARGE)
 FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
 LANES = contact_step.WORK_ROWS
 WORK_ROWS = LANES + 1
@@ -194,10 +195,7 @@ def step_from(p, w, y, lost, h):
         store_stage(S, stage(c, weight, load_line(S, i)), RATES + i)
     for n in range(SIZE):
         d = lost[n] + h * _combined(B, S, n)
-        s = y[n] + d
-        w[FRESH, n] = s
-        w[TRIED, n] = d - (s - y[n])
-        if not abs(s) < LARGE:
+        if not add(w, y, n, d):
             return math.inf
     normalise(w)
     for i in range(1, STAGES):

@@ -28,8 +28,8 @@ expand = UNBOUND
 FLAT = UNBOUND
 
 ORDER, STAGES = taylor_series.ORDER, contact_step.STAGES
-normalise, weight_of, COUPLED, LARGE, nears_flat = (
-    contact_step.normalise, contact_step.weight_of, contact_step.COUPLED, contact_step.LARGE,
+add, normalise, weight_of, COUPLED, nears_flat = (
+    contact_step.add, contact_step.normalise, contact_step.weight_of, contact_step.COUPLED,
     contact_step.nears_flat)
 FRESH, TRIED, SIZE = contact_step.FRESH, contact_step.TRIED, UNKNOWNS.size
 KEY, TOTALS, SERIES = range(contact_step.WORK_ROWS, contact_step.WORK_ROWS + 3)
@@ -75,10 +75,7 @@ def step_from(p, w, y, lost, h):
             w[TRIED, n] = h * (w[TRIED, n] + S[ORDER - k, n])
     for n in range(SIZE):
         d = lost[n] + w[TRIED, n]
-        s = y[n] + d
-        w[FRESH, n] = s
-        w[TRIED, n] = d - (s - y[n])
-        if not abs(s) < LARGE:
+        if not add(w, y, n, d):
             return math.inf
     normalise(w)
     return 0.0 if _sample(p, w, y, S, h) >= 0.0 else math.inf

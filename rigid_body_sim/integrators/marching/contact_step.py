@@ -83,13 +83,22 @@ def step_from(p, w, y, lost, h):
         d = lost[n] + (
             b0 * w[0, n] + b5 * w[5, n] + b6 * w[6, n] + b7 * w[7, n]
             + b8 * w[8, n] + b9 * w[9, n] + b10 * w[10, n] + b11 * w[11, n])
-        s = y[n] + d
-        w[FRESH, n] = s
-        w[TRIED, n] = d - (s - y[n])
-        if not abs(s) < LARGE:
+        if not add(w, y, n, d):
             return math.inf
     normalise(w)
     return 0.0
+
+
+@compiled_inline
+def add(w, y, n, d):
+    """Write the unknown n after a change d into row FRESH, what the sum loses into TRIED.
+
+    Return whether the unknown is still a number to go on from.
+    """
+    s = y[n] + d
+    w[FRESH, n] = s
+    w[TRIED, n] = d - (s - y[n])
+    return abs(s) < LARGE
 
 
 @compiled_inline
