@@ -19,14 +19,15 @@ from functools import partial
 from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.lanes import compiled_lanes
 from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DIRECTIONS,
     DRAG,
     EULER,
     OMEGA,
+    ORDER,
     UNKNOWNS,
     U,
     Unknowns,
@@ -34,12 +35,12 @@ from rigid_body_sim.integrators.marching.batch_lane import (
 )
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
+    advance_of,
     between_of,
     fill,
     half_turn,
     restored,
     square_of,
-    step_of,
 )
 from rigid_body_sim.numerics.rotations import rotate_back
 
@@ -90,10 +91,9 @@ def _products(o, sums, e, w, others):
 
 
 def _fill(o, row, dragged=False):
-    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
-    def next_order(k, sums, constant):
-        e1, e2 = _directions(row.coefficients(k, OF_DIRECTIONS))
-        w = row.coefficients(k, OF_OMEGA) if dragged else ()
+    """Fill the coefficients of all orders from 1 on, with drag or without."""
+    def next_order(k, sums, e, w, constant):
+        e1, e2 = _directions(e)
         changes = [o.plus(sums[added], o.minus(sums[subtracted]))
                    for places in SIGNED for added, subtracted in places]
         for i in range(3):
@@ -109,8 +109,7 @@ def _fill(o, row, dragged=False):
                 rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
             changes.append(o.gather(row(EULER + i), sums[GYROSCOPIC + i], rate))
         share = row.share(k)
-        for i, change in enumerate(changes):
-            row.put_coefficient(o.times(share, change), k, i)
+        return [o.times(share, change) for change in changes]
 
     fill(o, row, OF_DIRECTIONS, OF_OMEGA, SUMS, _products, next_order)
 
@@ -194,7 +193,9 @@ def _attitude_of(o, row, values, h):
     return _attitude(o, values[:DIRECTIONS], _turned(o, row.q, row.angle(h)))
 
 
-FORM = Form(tuple(range(UNKNOWNS)), 1.0, _fill, _unit, _attitude_of)
-advance = compiled_lanes(step_of(FORM), 0)
-advance_with_drag = compiled_lanes(step_of(FORM._replace(fill=partial(_fill, dragged=True))), 0)
-between = compiled_lanes(between_of(FORM), 0)
+FORM = Form(tuple(range(UNKNOWNS)), ORDER, 1.0, _fill, _unit, _attitude_of)
+advance, coarse_advance = advance_of(FORM), advance_of(FORM, order=COARSE)
+DRAGGED = partial(_fill, dragged=True)
+advance_with_drag, coarse_advance_with_drag = (
+    advance_of(FORM, fill=DRAGGED), advance_of(FORM, fill=DRAGGED, order=COARSE))
+between, coarse_between = between_of(FORM), between_of(FORM, order=COARSE)

@@ -10,22 +10,23 @@ so that x = cos(angle) and y = -sin(angle), by two products of two series for ea
 """
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.lanes import compiled_lanes
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DRAG,
     OMEGA,
+    ORDER,
     U,
     Unknowns,
 )
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
+    advance_of,
     between_of,
     fill,
     half_turn,
     restored,
     square_of,
-    step_of,
 )
 from rigid_body_sim.numerics.rotations import rotate_back
 
@@ -49,16 +50,13 @@ def _products(o, sums, e, _, rates):
 
 
 def _fill(o, row):
-    """Fill the coefficients of orders 1 ... ORDER."""
-    def next_order(k, turns, constant):
-        to_x, to_y = turns
-        x, y, rate = row.coefficients(k, FORM.moving)
-        share = row.share(k)
+    """Fill the coefficients of all orders from 1 on."""
+    def next_order(k, turns, e, rate, constant):
+        (to_x, to_y), share = turns, row.share(k)
         change = row(TORQUE) if constant else o.none()
-        for factor, value in ((row(PULL), x), (row(PULL + 1), y), (row(SLOWING), rate)):
-            change = o.gather(factor, value, change)
-        for place, rate_of in ((X, to_x), (Y, o.minus(to_y)), (RATE, change)):
-            row.put_coefficient(o.times(share, rate_of), k, place)
+        for place, value in zip((PULL, PULL + 1, SLOWING), (*e, *rate), strict=True):
+            change = o.gather(row(place), value, change)
+        return [o.times(share, change) for change in (to_x, o.minus(to_y), change)]
 
     fill(o, row, (X, Y), (RATE,), 2, _products, next_order)
 
@@ -89,6 +87,6 @@ def _attitude(o, row, values, h):
     return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
 
 
-FORM = Form((X, Y, RATE), COUNTS * COUNTS, _fill, _unit, _attitude)
-advance = compiled_lanes(step_of(FORM), 0)
-between = compiled_lanes(between_of(FORM), 0)
+FORM = Form((X, Y, RATE), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+advance, coarse_advance = advance_of(FORM), advance_of(FORM, order=COARSE)
+between, coarse_between = between_of(FORM), between_of(FORM, order=COARSE)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 
-ORDER = 18
+ORDER, COARSE = 18, 14    # of the series; the latter for coarse tolerances
 DIRECTIONS = 6    # components of two directions
 
 
@@ -31,6 +31,14 @@ class Point(NamedTuple):
     step: float      # that led here, s
     scale: float     # squared, of omega, (rad/s)^2
     lost: Unknowns   # by the sums
+    q: Quaternion
+    y: Unknowns
+
+
+class Before(NamedTuple):
+    """What `between` takes of the point before."""
+
+    time: float
     q: Quaternion
     y: Unknowns
 
@@ -57,7 +65,7 @@ class Lane(NamedTuple):
 
     point: Point
     series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
-    following: Point                        # the point that follows
+    before: Before                          # the point before
     end: float                              # time where the march ends, s
     sound: float                            # squared norm of the unknowns there
     since: float                            # time since the point that `between` takes, s
@@ -67,13 +75,14 @@ class Lane(NamedTuple):
 
 
 UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
-UNKNOWNS, POINT_SIZE = UNKNOWN.size, POINT.size
+UNKNOWNS = UNKNOWN.size
 OMEGA = UNKNOWN.part('omega').first    # the first of its components
 
 # rows; those of the coefficients follow those of the unknowns, which are order 0
 TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
-FOLLOWING, END, SOUND, SINCE, FOUND, INVERSES = (
-    LANE.part(name).first
-    for name in ('following', 'end', 'sound', 'since', 'found', 'inverses'))
+BEFORE_TIME, BEFORE_Q, BEFORE_SERIES = (LANE.part('before').part(name).first
+                                        for name in Before._fields)
+END, SOUND, SINCE, FOUND, INVERSES = (
+    LANE.part(name).first for name in ('end', 'sound', 'since', 'found', 'inverses'))
 EULER, CONSTANT, U, V, DRAG = (LANE.part('numbers').part(name).first for name in Numbers._fields)
 ROWS = LANE.size

@@ -13,8 +13,6 @@ from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.euler import read_state
 from rigid_body_sim.integrators.equations.falling import write
 from rigid_body_sim.integrators.marching.batch_lane import (
-    FOLLOWING,
-    POINT_SIZE,
     Lane,
     Point,
     Unknowns,
@@ -28,12 +26,11 @@ unknowns = UNBOUND
 
 # a lane is a column of W: its numbers stand LANES places apart
 COLUMN = layout(Lane, LANES)
-POINT, LATER = COLUMN.part('point'), COLUMN.part('following')
+POINT, BEFORE = COLUMN.part('point'), COLUMN.part('before')
 store_point, load_found = POINT.store, COLUMN.part('found').load
 load_sound = COLUMN.part('sound').load
-load_time, load_later = POINT.part('time').load, LATER.part('time').load
+load_time, load_before = POINT.part('time').load, BEFORE.part('time').load
 load_q, load_omega = POINT.part('q').load, POINT.part('y').part('omega').load
-load_later_q, load_later_omega = LATER.part('q').load, LATER.part('y').part('omega').load
 store_end, store_since = COLUMN.part('end').store, COLUMN.part('since').store
 NONE_LOST = Unknowns((0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
@@ -96,8 +93,8 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
         for lane in range(lanes):
             body, t, t1 = (
                 seats[BODY + lane],
+                load_before(W, lane),
                 load_time(W, lane),
-                load_later(W, lane),
             )
             if body != NOBODY:
                 if not ((t1 > t or t >= target) and load_sound(W, lane) < math.inf):
@@ -106,8 +103,6 @@ def march(W, p, turn, tolerance, seats, states, times, order, first, last, end, 
                 due |= seats[NEXT + lane] < last and times[order[seats[NEXT + lane]]] <= t1
         if due:
             _give(W, p, turn, seats, times, order, last, out)
-        for k in range(LANES * POINT_SIZE):
-            W[k] = W[LANES * FOLLOWING + k]
         if free:
             for lane in range(lanes):
                 body = seats[BODY + lane]
@@ -141,7 +136,7 @@ def _write(p, turn, q, omega, time, out):
 def _give(W, p, turn, seats, times, order, last, out):
     """Write the states at all times within the step: of each lane one time in turn.
 
-    At the end of a step the state is that of the following point.
+    At the end of a step the state is that of the point itself.
     """
     due = True
     while due:
@@ -150,14 +145,13 @@ def _give(W, p, turn, seats, times, order, last, out):
             store_since(W, 0.0, lane)
             body = seats[BODY + lane]
             if body != NOBODY and seats[NEXT + lane] < last:
-                k, begin, end = (order[seats[NEXT + lane]], load_time(W, lane),
-                                 load_later(W, lane))
+                k, begin, end = (order[seats[NEXT + lane]], load_before(W, lane),
+                                 load_time(W, lane))
                 if times[k] < end:
                     store_since(W, times[k] - begin, lane)
                     due = among = True
                 elif times[k] == end:
-                    _write(p[lane], turn, load_later_q(W, lane), load_later_omega(W, lane), end,
-                           out[body, k])
+                    _write(p[lane], turn, load_q(W, lane), load_omega(W, lane), end, out[body, k])
                     seats[NEXT + lane] += 1
                     due = True
         if among:
@@ -166,7 +160,7 @@ def _give(W, p, turn, seats, times, order, last, out):
                 body = seats[BODY + lane]
                 if body != NOBODY and seats[NEXT + lane] < last:
                     k = order[seats[NEXT + lane]]
-                    if times[k] < load_later(W, lane):
+                    if times[k] < load_time(W, lane):
                         found = load_found(W, lane)
                         _write(p[lane], turn, found.q, found.omega, times[k], out[body, k])
                         seats[NEXT + lane] += 1

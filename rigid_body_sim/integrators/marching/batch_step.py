@@ -9,17 +9,19 @@ batch_hinge.py for bodies on a hinge.
 
 from collections.abc import Callable
 from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
-from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
 from rigid_body_sim.integrators.marching.batch_lane import (
+    BEFORE_Q,
+    BEFORE_SERIES,
+    BEFORE_TIME,
     END,
-    FOLLOWING,
     FOUND,
     INVERSES,
     LOST,
     OMEGA,
-    ORDER,
     QUATERNION,
     SCALE,
     SERIES,
@@ -41,11 +43,13 @@ class Form(NamedTuple):
     ----------
     moving : tuple of int
         The unknowns that change; the others stay 0.
+    order : int
+        Of the series: ORDER or COARSE.
     counts : float
         Factor on the square of a term of the attitude's unknowns. It makes a body err about as it
         does alone with the same tolerance, which is what `auto` has tried.
     fill : function (o, row)
-        Fills the coefficients of orders 1 ... ORDER.
+        Fills the coefficients of all orders from 1 on.
     unit : function (o, values, lost)
         Returns the unknowns brought back to unit length, and what their sums have lost.
     attitude : function (o, row, values, h)
@@ -53,6 +57,7 @@ class Form(NamedTuple):
     """
 
     moving: tuple
+    order: int
     counts: float
     fill: Callable
     unit: Callable
@@ -60,10 +65,15 @@ class Form(NamedTuple):
 
 
 class Rows:
-    """The rows of lanes, by what stands in them."""
+    """The rows of lanes, by what stands in them; quaternion and order 0 are those of the point.
 
-    def __init__(self, o, W):
-        self.o, self._W = o, W
+    `of_before` takes those of the point before, from which the higher orders were found.
+    """
+
+    def __init__(self, o, W, order, of_before=False):
+        self.o, self._W, self.order = o, W, order
+        self._q, self._start = (
+            (BEFORE_Q, BEFORE_SERIES) if of_before else (QUATERNION, SERIES))
 
     def __call__(self, place):
         """Return a row of eight numbers."""
@@ -75,7 +85,7 @@ class Rows:
 
     def coefficient(self, order, unknown):
         """Return a coefficient of the series of an unknown."""
-        return self(SERIES + UNKNOWNS * order + unknown)
+        return self((SERIES + UNKNOWNS * order if order else self._start) + unknown)
 
     def coefficients(self, order, unknowns):
         """Return those of some unknowns; the order may be the variable of a loop."""
@@ -94,7 +104,7 @@ class Rows:
     @property
     def q(self):
         """The quaternion of the point."""
-        return [self(QUATERNION + i) for i in range(4)]
+        return [self(self._q + i) for i in range(4)]
 
     def angle(self, h, axes=(0, 1, 2)):
         """Return the integral of components of omega over h, by orders up to LOW."""
@@ -109,10 +119,10 @@ class Rows:
 
 
 def fill(o, row, attitude, omega, count, products, next_order):
-    """Fill the coefficients of orders 1 ... ORDER by Cauchy sums, which are loops.
+    """Fill the coefficients of all orders from 1 on by Cauchy sums, which are loops.
 
-    The two terms with the newest coefficients are added after a loop, so that it need not wait for
-    them.
+    The four terms with the two newest coefficients are added after a loop, so that it need not
+    wait for them; the newest ones are handed on, since reading what was just written takes time.
 
     Parameters
     ----------
@@ -123,27 +133,38 @@ def fill(o, row, attitude, omega, count, products, next_order):
     products : function (o, sums, attitude, omega, others)
         Returns the sums with the products of attitude and omega of one order with omega of the
         other, `others`.
-    next_order : function (k, sums, constant)
-        Writes the coefficients of the order k + 1; `constant` says whether k is 0.
+    next_order : function (k, sums, attitude, omega, constant)
+        Returns the coefficients of the order k + 1, of those of the order k; `constant` says
+        whether k is 0.
     """
-    def attitude_of(order):
-        return row.coefficients(order, attitude)
+    def coefficients(k):
+        return row.coefficients(k, attitude), row.coefficients(k, omega)
 
-    def omega_of(order):
-        return row.coefficients(order, omega)
-    none, first = [o.none()] * count, omega_of(0)
-    next_order(0, products(o, none, attitude_of(0), first, first), True)
+    def both(sums, one, other):
+        """Return the sums with the products of two orders, and the other way round."""
+        sums = products(o, sums, *one, other[1])
+        return products(o, sums, *other, one[1])
 
-    def order(k, _):
+    def following(k, sums, newest, constant=False):
+        found = next_order(k, sums, *newest, constant)
+        for unknown, value in zip((*attitude, *omega), found, strict=True):
+            row.put_coefficient(value, k, unknown)
+        return found[:len(attitude)], found[len(attitude):]
+
+    none, zeroth = [o.none()] * count, coefficients(0)
+    first = following(0, products(o, none, *zeroth, zeroth[1]), zeroth, True)
+    second = following(1, both(none, zeroth, first), first)
+    third = following(2, both(products(o, none, *first, first[1]), zeroth, second), second)
+
+    def order(k, values):
+        newest = values[:len(attitude)], values[len(attitude):]
+
         def pair(i, sums):
-            rest = o.place(k, -1, i)
-            return products(o, sums, attitude_of(i), omega_of(i), omega_of(rest))
-        sums = o.repeat(1, k, none, pair)
-        newest = omega_of(k)
-        sums = products(o, sums, attitude_of(0), omega_of(0), newest)
-        next_order(k, products(o, sums, attitude_of(k), newest, omega_of(0)), False)
-        return []
-    o.repeat(1, ORDER, [], order)
+            return products(o, sums, *coefficients(i), coefficients(o.place(k, -1, i))[1])
+        sums = o.repeat(2, o.place(k, 1, -1), none, pair)
+        sums = both(sums, coefficients(1), coefficients(o.place(k, 1, -1)))
+        return [*chain(*following(k, both(sums, coefficients(0), newest), newest))]
+    o.repeat(3, row.order, [*chain(*third)], order)
 
 
 def half_turn(o, angle):
@@ -192,11 +213,12 @@ def longest(o, row, tolerance2, scale, form):
         last,
         o.where_less(nothing, scale, o.root(weight), o.everywhere(o.number(UNMOVED))),
     )
-    final, before = o.times(square(ORDER, weight), o.times(last, last)), square(ORDER - 1, weight)
+    final = o.times(square(form.order, weight), o.times(last, last))
+    before = square(form.order - 1, weight)
     larger = o.where_less(final, before, before, final)
     step = o.power(
         o.divided(o.everywhere(tolerance2), o.where_less(larger, nothing, nothing, larger)),
-        0.5 / (ORDER - 2),
+        0.5 / (form.order - 2),
     )
     most = o.times(o.everywhere(o.number(GROWTH)), last)
     return o.where_less(step, most, step, most)
@@ -206,20 +228,20 @@ def changes(o, row, h, form):
     """Return the change of each unknown that moves in a time h, by its series."""
     found = []
     for i in form.moving:
-        change = row.coefficient(ORDER, i)
-        for k in range(ORDER - 1, 0, -1):
+        change = row.coefficient(form.order, i)
+        for k in range(form.order - 1, 0, -1):
             change = o.gather(change, h, row.coefficient(k, i))
         found.append(o.times(change, h))
     return found
 
 
 def advance(o, W, tolerance2, form):
-    """Make the series of the point and from them the point that follows it.
+    """Make the series of the point, and put the point that follows in its place.
 
     The square of the tolerance is for a second. More than forty lines: one straight recipe for the
     vector unit, in which every value is named once.
     """
-    row = Rows(o, W)
+    row = Rows(o, W, form.order)
     form.fill(o, row)
     omega = [i for i in form.moving if i >= OMEGA]
     scale = row(SCALE)
@@ -239,16 +261,20 @@ def advance(o, W, tolerance2, form):
         o.plus(b, o.minus(o.plus(after, o.minus(a)))) for a, b, after in zip(y, d, y1, strict=True)
     ]
     y1, lost = form.unit(o, y1, lost)
-    row.put(square_of(o, y1), SOUND)
+    q, q1 = row.q, form.attitude(o, row, y1, h)
     for place, value in (
+        (BEFORE_TIME, t),
+        *((BEFORE_Q + i, value) for i, value in enumerate(q)),
+        *((BEFORE_SERIES + i, value) for i, value in zip(form.moving, y, strict=True)),
         (TIME, t1),
         (STEP, h),
         (SCALE, scale),
+        (SOUND, square_of(o, y1)),
         *((LOST + i, value) for i, value in zip(form.moving, lost, strict=True)),
-        *((QUATERNION + i, value) for i, value in enumerate(form.attitude(o, row, y1, h))),
+        *((QUATERNION + i, value) for i, value in enumerate(q1)),
         *((SERIES + i, value) for i, value in zip(form.moving, y1, strict=True)),
     ):
-        row.put(value, FOLLOWING + place)
+        row.put(value, place)
     return []
 
 
@@ -262,8 +288,11 @@ def restored(o, own, back, lost):
 
 
 def between(o, W, form):
-    """Find quaternion and omega of each lane at its own time since the point, by its series."""
-    row = Rows(o, W)
+    """Find quaternion and omega of each lane at its own time since the point before.
+
+    They are found by its series.
+    """
+    row = Rows(o, W, form.order, of_before=True)
     h = row(SINCE)
     y = [o.plus(row.coefficient(0, i), change)
          for i, change in zip(form.moving, changes(o, row, h, form), strict=True)]
@@ -275,11 +304,11 @@ def between(o, W, form):
     return []
 
 
-def step_of(form):
-    """Return the recurrence of a step, (o, W, tolerance2), for a form."""
-    return partial(advance, form=form)
+def advance_of(form, **changes):
+    """Return the kernel (W, (tolerance2,)) of a step, for a form with some changes."""
+    return compiled_lanes(partial(advance, form=form._replace(**changes)), 0)
 
 
-def between_of(form):
-    """Return the recurrence of what is between points, (o, W), for a form."""
-    return partial(between, form=form)
+def between_of(form, **changes):
+    """Return the kernel (W, ()) of what is between points, for a form with some changes."""
+    return compiled_lanes(partial(between, form=form._replace(**changes)), 0)

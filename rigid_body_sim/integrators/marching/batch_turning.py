@@ -13,22 +13,23 @@ step.
 from functools import partial
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.lanes import compiled_lanes
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DRAG,
     EULER,
     OMEGA,
+    ORDER,
     UNKNOWNS,
     Unknowns,
 )
 from rigid_body_sim.integrators.marching.batch_step import (
     Form,
+    advance_of,
     between_of,
     fill,
     restored,
     square_of,
-    step_of,
 )
 
 OF_Q, OF_OMEGA = range(4), range(OMEGA, UNKNOWNS)
@@ -58,23 +59,23 @@ def _products(o, sums, q, w, others):
 
 
 def _fill(o, row, dragged=False):
-    """Fill the coefficients of orders 1 ... ORDER, with drag or without."""
-    def next_order(k, sums, constant):
+    """Fill the coefficients of all orders from 1 on, with drag or without."""
+    def next_order(k, sums, q, w, constant):
         share = row.share(k)
-        half, terms = o.times(o.everywhere(o.number(0.5)), share), iter(sums)
-        for i, signs in enumerate(RATES):
+        half, terms, found = o.times(o.everywhere(o.number(0.5)), share), iter(sums), []
+        for signs in RATES:
             added, subtracted = (_total(o, [next(terms) for _ in one]) for one in signs)
             rate = o.minus(subtracted)
             if added is not None:
                 rate = o.plus(added, rate)
-            row.put_coefficient(o.times(half, rate), k, i)
-        w = row.coefficients(k, OF_OMEGA) if dragged else ()
+            found.append(o.times(half, rate))
         for i, own in enumerate(terms):
             rate = row(CONSTANT + i) if constant else o.none()
-            for j, rates in enumerate(w):
+            for j, rates in enumerate(w if dragged else ()):
                 rate = o.gather(row(DRAG + 3 * i + j), rates, rate)
             rate = o.gather(row(EULER + i), own, rate)
-            row.put_coefficient(o.times(share, rate), k, OMEGA + i)
+            found.append(o.times(share, rate))
+        return found
 
     fill(o, row, OF_Q, OF_OMEGA, len(TERMS) + len(OF_OMEGA), _products, next_order)
 
@@ -101,7 +102,9 @@ def _attitude(o, row, values, h):
     return values[:len(OF_Q)]
 
 
-FORM = Form((*OF_Q, *OF_OMEGA), COUNTS * COUNTS, _fill, _unit, _attitude)
-advance = compiled_lanes(step_of(FORM), 0)
-advance_with_drag = compiled_lanes(step_of(FORM._replace(fill=partial(_fill, dragged=True))), 0)
-between = compiled_lanes(between_of(FORM), 0)
+FORM = Form((*OF_Q, *OF_OMEGA), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+advance, coarse_advance = advance_of(FORM), advance_of(FORM, order=COARSE)
+DRAGGED = partial(_fill, dragged=True)
+advance_with_drag, coarse_advance_with_drag = (
+    advance_of(FORM, fill=DRAGGED), advance_of(FORM, fill=DRAGGED, order=COARSE))
+between, coarse_between = between_of(FORM), between_of(FORM, order=COARSE)

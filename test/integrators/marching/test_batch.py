@@ -211,44 +211,53 @@ def test_who_fails_is_named():
         ensemble(scene, starts[:2], [1.0], 'taylor', 1e-9)
 
 
+@pytest.mark.parametrize('order', ['', 'coarse_'])
 @pytest.mark.parametrize('form', [
     batch_directions, pytest.param(batch_turning, marks=IN_SOAK),
     pytest.param(batch_hinge, marks=IN_SOAK)])
-def test_a_step_is_the_same_in_plain_python(form):
+def test_a_step_is_the_same_in_plain_python(form, order):
     """The recurrence on arrays agrees to the rounding of sums of 18 terms, and so does the end."""
     draw = np.random.default_rng(1)
     table = np.zeros((batch_lane.ROWS, LANES))
     table[batch_lane.EULER:batch_lane.EULER + 3] = [[-0.3], [0.6], [-0.4]]
     table[batch_lane.CONSTANT:batch_lane.DRAG] = draw.uniform(-1.0, 1.0, (15, 1))
     table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0).reshape(-1, 1)
+    attitude = slice(batch_lane.QUATERNION, batch_lane.SERIES)
+    unknowns = slice(batch_lane.SERIES, batch_lane.SERIES + batch_lane.UNKNOWNS)
     for lane in range(LANES):
         q, omega = draw.normal(size=4), draw.uniform(-1.0, 1.0, 3)
         if form is batch_hinge:
             q[:2] = omega[:2] = 0.0
         q /= np.linalg.norm(q)
-        table[batch_lane.QUATERNION:batch_lane.SERIES, lane] = q
-        table[batch_lane.SERIES:batch_lane.POINT_SIZE, lane] = np.concatenate(
-            form.unknowns(tuple(q), tuple(omega)))
+        table[attitude, lane] = q
+        table[unknowns, lane] = np.concatenate(form.unknowns(tuple(q), tuple(omega)))
     table[batch_lane.END] = 1e3
+    step = getattr(form, f'{order}advance')
 
     @compiled
     def advance(W):
-        form.advance(W, (1e-20,))
+        step(W, (1e-20,))
     plain, written = table.ravel().copy(), table.ravel().copy()
-    batch_step.advance(Plain(), plain, 1e-20, form.FORM)
+    batch_step.advance(Plain(), plain, 1e-20, form.FORM._replace(
+        order=batch_lane.COARSE if order else batch_lane.ORDER))
     advance(written)
     plain, written = plain.reshape(table.shape), written.reshape(table.shape)
-    orders, end = (slice(batch_lane.SERIES, batch_lane.FOLLOWING),
-                   slice(batch_lane.FOLLOWING, batch_lane.FOLLOWING + batch_lane.POINT_SIZE))
+    # what is left of the point before: its time, quaternion and unknowns
+    before = slice(batch_lane.BEFORE_TIME, batch_lane.END)
+    assert (written[before] == plain[before]).all()
+    assert (written[before] == np.concatenate(
+        [table[:1], table[attitude], table[unknowns]])).all()
+    orders = slice(unknowns.stop, batch_lane.BEFORE_TIME)
+    highest = batch_lane.UNKNOWNS * (batch_lane.COARSE if order else batch_lane.ORDER)
+    assert np.abs(plain[orders][:highest]).min(axis=1).nonzero()[0][-1] >= highest - 3
+    assert not plain[orders][highest:].any(), 'higher orders are not filled'
     # 1
     assert np.abs(plain[orders] - written[orders]).max() < 20 * ULP * np.abs(plain[orders]).max()
-    assert written[end][batch_lane.STEP] == near(plain[end][batch_lane.STEP], 1e-14)    # the same
-    for rows in (slice(batch_lane.QUATERNION, batch_lane.SERIES),
-                 slice(batch_lane.SERIES, batch_lane.POINT_SIZE)):
-        assert np.abs(plain[end][rows] - written[end][rows]).max() < 5 * ULP    # 1
+    assert written[batch_lane.STEP] == near(plain[batch_lane.STEP], 1e-14)    # the same
+    for rows in (attitude, unknowns):
+        assert np.abs(plain[rows] - written[rows]).max() < 5 * ULP    # 1
     # the quaternion turns with the attitude of the unknowns
-    for q, y in zip(written[end][batch_lane.QUATERNION:batch_lane.SERIES].T,
-                    written[end][batch_lane.SERIES:batch_lane.POINT_SIZE].T, strict=True):
+    for q, y in zip(written[attitude].T, written[unknowns].T, strict=True):
         # 3.5
-        attitude, _ = form.unknowns(tuple(q), (0.0, 0.0, 0.0))
-        assert np.abs(y[:batch_lane.DIRECTIONS] - attitude).max() < 8 * ULP
+        turned, _ = form.unknowns(tuple(q), (0.0, 0.0, 0.0))
+        assert np.abs(y[:batch_lane.DIRECTIONS] - turned).max() < 8 * ULP

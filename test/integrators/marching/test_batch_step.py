@@ -28,17 +28,17 @@ def longest(final, before, last, scale, tolerance2=1e-20, form=batch_directions.
     """
     table = np.zeros((batch_lane.ROWS, LANES))
     table[batch_lane.STEP] = last
-    for order, values in ((batch_lane.ORDER, final), (batch_lane.ORDER - 1, before)):
+    for order, values in ((form.order, final), (form.order - 1, before)):
         begin = batch_lane.SERIES + batch_lane.UNKNOWNS * order
         table[begin:begin + batch_lane.UNKNOWNS] = np.reshape(values, (-1, 1))
     found = batch_step.longest(
-        O, batch_step.Rows(O, table.ravel()), tolerance2, np.full(LANES, scale), form)
+        O, batch_step.Rows(O, table.ravel(), form.order), tolerance2, np.full(LANES, scale), form)
     assert (found == found[0]).all()
     return float(found[0])
 
 
-def allowed(square, tolerance2=1e-20):
-    return (tolerance2 / square) ** (0.5 / (batch_lane.ORDER - 2))
+def allowed(square, tolerance2=1e-20, order=batch_lane.ORDER):
+    return (tolerance2 / square) ** (0.5 / (order - 2))
 
 
 CASES = [([3e-3] * 6 + [5e-3] * 3, [1e-9] * 9), ([1e-9] * 9, [3e-3] * 6 + [5e-3] * 3),
@@ -68,6 +68,14 @@ def test_terms_of_other_attitudes_count_several_times_and_what_does_not_move_not
     final[list(attitude)], final[list(omega)] = 3e-3, 5e-3
     square = form.counts * len(attitude) * 9e-6 + len(omega) * 25e-6 / 4.0
     assert longest(final, [0.0] * 9, 0.5, 4.0, form=form) == near(allowed(square * 0.25), rel=0.08)
+
+
+def test_a_shorter_series_ends_with_its_own_last_terms():
+    form = batch_directions.FORM._replace(order=batch_lane.COARSE)
+    final, before = CASES[0]
+    square = sum(x * x for x in final[:6]) + sum(x * x for x in final[6:])
+    assert longest(final, before, 1.0, 1.0, form=form) == near(
+        allowed(square, order=batch_lane.COARSE), rel=0.08)
 
 
 def test_a_step_grows_by_a_bounded_factor_also_where_all_terms_vanish():
