@@ -21,13 +21,13 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.marching.batch_lane import (
-    COARSE,
     CONSTANT,
     DIRECTIONS,
     DRAG,
     EULER,
+    MIDDLE,
     OMEGA,
-    ORDER,
+    ORDERS,
     UNKNOWNS,
     U,
     Unknowns,
@@ -193,9 +193,9 @@ def _attitude_of(o, row, values, h):
     return _attitude(o, values[:DIRECTIONS], _turned(o, row.q, row.angle(h)))
 
 
-FORM = Form(tuple(range(UNKNOWNS)), ORDER, 1.0, _fill, _unit, _attitude_of)
-advance, coarse_advance = advance_of(FORM), advance_of(FORM, order=COARSE)
-DRAGGED = partial(_fill, dragged=True)
-advance_with_drag, coarse_advance_with_drag = (
-    advance_of(FORM, fill=DRAGGED), advance_of(FORM, fill=DRAGGED, order=COARSE))
-between, coarse_between = between_of(FORM), between_of(FORM, order=COARSE)
+FORM = Form(tuple(range(UNKNOWNS)), MIDDLE, 1.0, _fill, _unit, _attitude_of)
+coarse_advance, middle_advance, fine_advance = (advance_of(FORM, order=order) for order in ORDERS)
+DRAGGED = FORM._replace(fill=partial(_fill, dragged=True))
+coarse_advance_with_drag, middle_advance_with_drag, fine_advance_with_drag = (
+    advance_of(DRAGGED, order=order) for order in ORDERS)
+coarse_between, middle_between, fine_between = (between_of(FORM, order=order) for order in ORDERS)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 
-ORDER, COARSE = 18, 14    # of the series; the latter for coarse tolerances
+COARSE, MIDDLE, FINE = ORDERS = 14, 18, 22    # of the series, by the tolerance
 DIRECTIONS = 6    # components of two directions
 
 
@@ -64,14 +64,14 @@ class Lane(NamedTuple):
     """All numbers of a lane: they stand in a column, one in each row of eight."""
 
     point: Point
-    series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
+    series: tuple[(Unknowns,) * FINE]       # coefficients of the higher orders
     before: Before                          # the point before
     end: float                              # time where the march ends, s
     sound: float                            # squared norm of the unknowns there
     since: float                            # time since the point that `between` takes, s
     found: Attitude                         # what `between` finds
     numbers: Numbers
-    inverses: tuple[(float,) * ORDER]       # 1/k for k = 1 ... ORDER
+    inverses: tuple[(float,) * FINE]        # 1/k for k = 1 ... FINE
 
 
 UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)

@@ -44,7 +44,7 @@ class Form(NamedTuple):
     moving : tuple of int
         The unknowns that change; the others stay 0.
     order : int
-        Of the series: ORDER or COARSE.
+        Of the series: one of ORDERS.
     counts : float
         Factor on the square of a term of the attitude's unknowns. It makes a body err about as it
         does alone with the same tolerance, which is what `auto` has tried.
@@ -304,11 +304,11 @@ def between(o, W, form):
     return []
 
 
-def advance_of(form, **changes):
-    """Return the kernel (W, (tolerance2,)) of a step, for a form with some changes."""
-    return compiled_lanes(partial(advance, form=form._replace(**changes)), 0)
+def advance_of(form, order):
+    """Return the kernel (W, (tolerance2,)) of a step of a form, with series of an order."""
+    return compiled_lanes(partial(advance, form=form._replace(order=order)), 0)
 
 
-def between_of(form, **changes):
-    """Return the kernel (W, ()) of what is between points, for a form with some changes."""
-    return compiled_lanes(partial(between, form=form._replace(**changes)), 0)
+def between_of(form, order):
+    """Return the kernel (W, ()) of what is between points, with series of an order."""
+    return compiled_lanes(partial(between, form=form._replace(order=order)), 0)

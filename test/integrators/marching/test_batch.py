@@ -211,17 +211,18 @@ def test_who_fails_is_named():
         ensemble(scene, starts[:2], [1.0], 'taylor', 1e-9)
 
 
-@pytest.mark.parametrize('order', ['', 'coarse_'])
+@pytest.mark.parametrize(('length', 'order'), [
+    ('coarse', batch_lane.COARSE), ('middle', batch_lane.MIDDLE), ('fine', batch_lane.FINE)])
 @pytest.mark.parametrize('form', [
     batch_directions, pytest.param(batch_turning, marks=IN_SOAK),
     pytest.param(batch_hinge, marks=IN_SOAK)])
-def test_a_step_is_the_same_in_plain_python(form, order):
-    """The recurrence on arrays agrees to the rounding of sums of 18 terms, and so does the end."""
+def test_a_step_is_the_same_in_plain_python(form, length, order):
+    """The recurrence on arrays agrees to the rounding of sums of 22 terms, and so does the end."""
     draw = np.random.default_rng(1)
     table = np.zeros((batch_lane.ROWS, LANES))
     table[batch_lane.EULER:batch_lane.EULER + 3] = [[-0.3], [0.6], [-0.4]]
     table[batch_lane.CONSTANT:batch_lane.DRAG] = draw.uniform(-1.0, 1.0, (15, 1))
-    table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0).reshape(-1, 1)
+    table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.FINE + 1.0).reshape(-1, 1)
     attitude = slice(batch_lane.QUATERNION, batch_lane.SERIES)
     unknowns = slice(batch_lane.SERIES, batch_lane.SERIES + batch_lane.UNKNOWNS)
     for lane in range(LANES):
@@ -232,14 +233,13 @@ def test_a_step_is_the_same_in_plain_python(form, order):
         table[attitude, lane] = q
         table[unknowns, lane] = np.concatenate(form.unknowns(tuple(q), tuple(omega)))
     table[batch_lane.END] = 1e3
-    step = getattr(form, f'{order}advance')
+    step = getattr(form, f'{length}_advance')
 
     @compiled
     def advance(W):
         step(W, (1e-20,))
     plain, written = table.ravel().copy(), table.ravel().copy()
-    batch_step.advance(Plain(), plain, 1e-20, form.FORM._replace(
-        order=batch_lane.COARSE if order else batch_lane.ORDER))
+    batch_step.advance(Plain(), plain, 1e-20, form.FORM._replace(order=order))
     advance(written)
     plain, written = plain.reshape(table.shape), written.reshape(table.shape)
     # what is left of the point before: its time, quaternion and unknowns
@@ -248,7 +248,7 @@ def test_a_step_is_the_same_in_plain_python(form, order):
     assert (written[before] == np.concatenate(
         [table[:1], table[attitude], table[unknowns]])).all()
     orders = slice(unknowns.stop, batch_lane.BEFORE_TIME)
-    highest = batch_lane.UNKNOWNS * (batch_lane.COARSE if order else batch_lane.ORDER)
+    highest = batch_lane.UNKNOWNS * order
     assert np.abs(plain[orders][:highest]).min(axis=1).nonzero()[0][-1] >= highest - 3
     assert not plain[orders][highest:].any(), 'higher orders are not filled'
     # 1
