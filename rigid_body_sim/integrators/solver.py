@@ -247,7 +247,7 @@ class Stepped:
         for body in np.flatnonzero((first < begins) | (last > _latest(begins, rates))):
             with _naming(body):
                 self.start(starts[body])._within(first, last)
-        on_all_cores(side_by_side, len(starts), 8 * LANES)
+        on_all_cores(side_by_side, len(starts), 16 * LANES)
 
     def _check(self, rows):
         """Raise if a state is beyond what doubles hold.

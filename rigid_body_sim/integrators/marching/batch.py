@@ -119,7 +119,8 @@ class Batch:
     """
 
     def __init__(self, equations, tolerance, times):
-        self._tolerance, self._times, self._stretches = tolerance, times, []
+        self._equations, self._tolerance, self._times = equations, tolerance, times
+        self._stretches, self._numbers = [], {}
         self._order = np.argsort(times, kind='stable')
         form, dragged = _form(equations).__name__, equations.dragged and not equations.hinged
         length = ('coarse' if tolerance >= COARSE_FROM
@@ -131,14 +132,18 @@ class Batch:
         # between two breakpoints the equations hold, and their result at the end is the start of
         # the next stretch
         for end in (*(time for time in equations.breakpoints if time <= rising[-1]), math.inf):
-            p, (first, last) = (
-                equations.held(begin),
-                np.searchsorted(rising, (begin, end)).tolist(),
-            )
-            rows, table = rows_for(p, equations.frame.hinge)
-            turn = from_matrix(tuple(zip(*rows, strict=True)))
-            self._stretches.append((table, np.tile(p, (LANES, 1)), turn, first, last, end))
+            first, last = np.searchsorted(rising, (begin, end)).tolist()
+            self._stretches.append((begin, first, last, end))
             begin = end
+
+    def _numbers_from(self, begin):
+        """Return the rows of lanes, the parameters of each lane and the turn from a time on."""
+        if begin not in self._numbers:
+            p = self._equations.held(begin)
+            rows, table = rows_for(p, self._equations.frame.hinge)
+            self._numbers[begin] = (
+                table, np.tile(p, (LANES, 1)), from_matrix(tuple(zip(*rows, strict=True))))
+        return self._numbers[begin]
 
     def run(self, starts, out):
         """Fill out, shape (bodies, n, 14), with the states of bodies.
@@ -151,10 +156,11 @@ class Batch:
         clock resolves, its time), or None.
         """
         states, seats = starts.copy(), np.empty(SEATS, dtype=np.int64)
-        begin = starts[:, STATE_TIME].min(initial=math.inf)
-        for table, p, turn, first, last, end in self._stretches:
-            if end <= begin and first == last:
+        earliest = starts[:, STATE_TIME].min(initial=math.inf)
+        for begin, first, last, end in self._stretches:
+            if end <= earliest and first == last:
                 continue    # it is over before the first body starts
+            table, p, turn = self._numbers_from(begin)
             W, numbers, found = _on_lines(table), p.copy(), []
 
             def arrived(rounds, W=W, numbers=numbers, turn=turn, stretch=(first, last, end),
