@@ -180,10 +180,11 @@ class Choice:
         """Whether it is the closed form of a scene nearly this one: its error is of the start."""
         return self.method == 'exact' and self._prototype.is_nearly
 
-    def finer(self):
+    def finer(self, share=FINER):
         """Return a Choice of the method with a finer tolerance, beside which its errors show.
 
-        It is None for a closed form that holds from every start, which has no tolerance.
+        The tolerance is a share of this one; of a share of 0 it is the finest that there is. It is
+        None for a closed form that holds from every start, which has no tolerance.
 
         Raises
         ------
@@ -194,7 +195,7 @@ class Choice:
             return None
         if self.tolerance is None:
             raise BadInput('step', f'got {self.step!r}', 'an accuracy: fixed steps are not tried')
-        finer = max(FINEST, FINER * self.tolerance)
+        finer = max(FINEST, share * self.tolerance)
         if finer == self.tolerance:
             raise BadInput('accuracy', f'takes a tolerance of {self.tolerance!r}',
                            'a coarser one: no finer run tells its error')

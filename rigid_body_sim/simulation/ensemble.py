@@ -14,6 +14,7 @@ from rigid_body_sim.choice.rounding import of_starts
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.numerics.rotations import angles_between
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import Scene, load_scene, parse_scene
@@ -85,8 +86,9 @@ class Ensemble(Sequence):
         It is the largest at the times that were asked for. `auto` takes the tolerance that the
         scene's own start needs: a body whose motion magnifies errors more may err by more than the
         accuracy, and shows it here. Bodies run again with a finer tolerance, which takes a little
-        longer than the ensemble did; the error of a closed form is half an ulp of the angle
-        turned, without a run. The starts and the states must still be what they were.
+        longer than the ensemble did, and those that differ by less than that one with the finest;
+        the error of a closed form is half an ulp of the angle turned, without a run. The starts
+        and the states must still be what they were.
 
         Raises
         ------
@@ -111,14 +113,24 @@ class Ensemble(Sequence):
                 continue
             for part in _blocks(len(bodies), len(times)):
                 here = bodies[part]
-                attitudes = np.empty((len(here), len(times), _width('orientation')))
-                _fill(finer, starts[here], times, ('orientation',), attitudes, _silent)
-                apart = np.empty(attitudes[..., 0].size)
-                angles_between(self.orientation[here].reshape(len(apart), -1),
-                               attitudes.reshape(len(apart), -1), apart)
-                largest = apart.reshape(len(here), -1).max(axis=1, initial=0.0)
-                errors[here] = np.maximum(errors[here], largest)
+                apart = self._apart(finer, here)
+                # what differs by less than the finer tolerance may have been taken in the same
+                # steps, which a start or the growth of steps limits, not the tolerance
+                alike = apart < finer.tolerance
+                if alike.any() and finer.tolerance > FINEST:
+                    apart[alike] = self._apart(choice.finer(0.0), here[alike])
+                errors[here] = np.maximum(errors[here], apart)
         return errors
+
+    def _apart(self, choice, bodies):
+        """Return how far the attitudes of bodies are from those by another Choice, rad, each."""
+        starts, times = self._asked
+        attitudes = np.empty((len(bodies), len(times), _width('orientation')))
+        _fill(choice, starts[bodies], times, ('orientation',), attitudes, _silent)
+        apart = np.empty(attitudes[..., 0].size)
+        angles_between(self.orientation[bodies].reshape(len(apart), -1),
+                       attitudes.reshape(len(apart), -1), apart)
+        return apart.reshape(len(bodies), -1).max(axis=1, initial=0.0)
 
 
 def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto',

@@ -246,6 +246,21 @@ def test_bodies_that_magnify_errors_are_told_by_their_expected_errors():
     assert few.expected_errors().tolist() == told.tolist()
 
 
+def test_errors_of_steps_that_the_start_limits_are_told():
+    """Bodies that turn by up to 1 rad take the same steps to 8e-6 and to a finer tolerance.
+
+    The quicker four err by 3e-14 to 1e-11; that finer run alone told 5e-16 of each.
+    """
+    scene = parse_scene(DRIVEN)
+    starts = np.tile(scene.initial.vector, (8, 1))
+    starts[:, 5:8] *= np.linspace(0.1, 1.0, 8)[:, np.newaxis]
+    found = ensemble(scene, starts, [0.5], 'taylor', 8e-6, horizon=1.0)
+    best = ensemble(scene, starts, [0.5], 'taylor', 1e-15, horizon=1.0)
+    errors, told = apart(found, best)[:, 0], found.expected_errors()
+    assert (errors[4:] > 1e-14).all()
+    np.testing.assert_allclose(told[4:], errors[4:], rtol=0.1)    # 1e-5
+
+
 def test_the_expected_errors_of_a_closed_form_are_half_an_ulp_of_the_angle_turned():
     starts = [State.of(angular_velocity=(0.01, 5.0 * k, 0.01)) for k in (1, 10)]
     found = ensemble('tennis_racket', starts, [100.0])

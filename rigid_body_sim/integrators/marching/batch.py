@@ -30,9 +30,7 @@ from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 ROUNDS = 64    # rounds of steps in the first call of the march
-# the least tolerance, for a second, for which a series of 14 is quicker than one of 18 orders, and
-# the least for which that is quicker than one of 22
-COARSE_FROM, MIDDLE_FROM = 1e-5, 1e-10
+COARSE_FROM = 1e-5    # the least tolerance, for a second, to which the shorter series is quicker
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
 
 
@@ -93,7 +91,7 @@ def rows_for(p, hinge):
         (batch_lane.U, pull.ravel()),
         (batch_lane.V, second),
         (batch_lane.DRAG, numbers(series.SERIES, 'drag')),
-        (batch_lane.INVERSES, 1.0 / np.arange(1.0, batch_lane.FINE + 1.0)),
+        (batch_lane.INVERSES, 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0)),
     ):
         table[at:at + len(values)] = np.reshape(values, (-1, 1))
     return rows, table
@@ -123,11 +121,10 @@ class Batch:
         self._stretches, self._numbers = [], {}
         self._order = np.argsort(times, kind='stable')
         form, dragged = _form(equations).__name__, equations.dragged and not equations.hinged
-        length = ('coarse' if tolerance >= COARSE_FROM
-                  else 'middle' if tolerance >= MIDDLE_FROM else 'fine')
+        series = f'{form}:{"coarse_" if tolerance >= COARSE_FROM else ""}'
         self._kernels = specialise(
-            batch_march, advance=f'{form}:{length}_advance{"_with_drag" if dragged else ""}',
-            between=f'{form}:{length}_between', unknowns=f'{form}:unknowns')
+            batch_march, advance=f'{series}advance{"_with_drag" if dragged else ""}',
+            between=f'{series}between', unknowns=f'{form}:unknowns')
         rising, begin = times[self._order], -math.inf
         # between two breakpoints the equations hold, and their result at the end is the start of
         # the next stretch

@@ -7,9 +7,7 @@ The unknowns are two directions of the world seen in the body, e1 and e2, and om
     omega_1' = ((I2 - I3)/I1) omega_2 omega_3 + (constant + U e1 + V e2 + D omega)_1
 
 and cyclically, where e1 lies along a force and e2 in the plane of it and a couple, both fixed
-in the world, and D is the matrix of drag, by 15 products of two series for each order. Their
-Cauchy sums are loops; the two terms with the newest coefficients are added after the loop, so that
-it need not wait for them.
+in the world, and D is the matrix of drag, by 15 products of two series for each order.
 
 The quaternion follows from e1 and e2 up to its sign, which is chosen by continuity: the one nearer
 to the result of integrating omega alone.
@@ -21,13 +19,13 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DIRECTIONS,
     DRAG,
     EULER,
-    MIDDLE,
     OMEGA,
-    ORDERS,
+    ORDER,
     UNKNOWNS,
     U,
     Unknowns,
@@ -193,9 +191,9 @@ def _attitude_of(o, row, values, h):
     return _attitude(o, values[:DIRECTIONS], _turned(o, row.q, row.angle(h)))
 
 
-FORM = Form(tuple(range(UNKNOWNS)), MIDDLE, 1.0, _fill, _unit, _attitude_of)
-coarse_advance, middle_advance, fine_advance = (advance_of(FORM, order=order) for order in ORDERS)
+FORM = Form(tuple(range(UNKNOWNS)), ORDER, 1.0, _fill, _unit, _attitude_of)
+advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
 DRAGGED = FORM._replace(fill=partial(_fill, dragged=True))
-coarse_advance_with_drag, middle_advance_with_drag, fine_advance_with_drag = (
-    advance_of(DRAGGED, order=order) for order in ORDERS)
-coarse_between, middle_between, fine_between = (between_of(FORM, order=order) for order in ORDERS)
+advance_with_drag, coarse_advance_with_drag = (
+    advance_of(DRAGGED, ORDER), advance_of(DRAGGED, COARSE))
+between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

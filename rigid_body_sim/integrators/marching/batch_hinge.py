@@ -11,11 +11,11 @@ so that x = cos(angle) and y = -sin(angle), by two products of two series for ea
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DRAG,
-    MIDDLE,
     OMEGA,
-    ORDERS,
+    ORDER,
     U,
     Unknowns,
 )
@@ -87,6 +87,6 @@ def _attitude(o, row, values, h):
     return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
 
 
-FORM = Form((X, Y, RATE), MIDDLE, COUNTS * COUNTS, _fill, _unit, _attitude)
-coarse_advance, middle_advance, fine_advance = (advance_of(FORM, order=order) for order in ORDERS)
-coarse_between, middle_between, fine_between = (between_of(FORM, order=order) for order in ORDERS)
+FORM = Form((X, Y, RATE), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
+between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

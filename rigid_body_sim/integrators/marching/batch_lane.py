@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector, layout
 
-COARSE, MIDDLE, FINE = ORDERS = 14, 18, 22    # of the series, by the tolerance
+ORDER, COARSE = 18, 14    # of the series; the latter for coarse tolerances
 DIRECTIONS = 6    # components of two directions
 
 
@@ -51,7 +51,7 @@ class Attitude(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """The numbers of the equations (batch_series.py)."""
+    """The numbers of the equations (batch.py)."""
 
     euler: Vector
     constant: Vector
@@ -64,14 +64,14 @@ class Lane(NamedTuple):
     """All numbers of a lane: they stand in a column, one in each row of eight."""
 
     point: Point
-    series: tuple[(Unknowns,) * FINE]       # coefficients of the higher orders
+    series: tuple[(Unknowns,) * ORDER]      # coefficients of the higher orders
     before: Before                          # the point before
     end: float                              # time where the march ends, s
     sound: float                            # squared norm of the unknowns there
     since: float                            # time since the point that `between` takes, s
     found: Attitude                         # what `between` finds
     numbers: Numbers
-    inverses: tuple[(float,) * FINE]        # 1/k for k = 1 ... FINE
+    inverses: tuple[(float,) * ORDER]       # 1/k for k = 1 ... ORDER
 
 
 UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)

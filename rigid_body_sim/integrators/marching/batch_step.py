@@ -44,7 +44,7 @@ class Form(NamedTuple):
     moving : tuple of int
         The unknowns that change; the others stay 0.
     order : int
-        Of the series: one of ORDERS.
+        Of the series: ORDER or COARSE.
     counts : float
         Factor on the square of a term of the attitude's unknowns. It makes a body err about as it
         does alone with the same tolerance, which is what `auto` has tried.

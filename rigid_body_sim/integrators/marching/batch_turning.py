@@ -14,12 +14,12 @@ from functools import partial
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.integrators.marching.batch_lane import (
+    COARSE,
     CONSTANT,
     DRAG,
     EULER,
-    MIDDLE,
     OMEGA,
-    ORDERS,
+    ORDER,
     UNKNOWNS,
     Unknowns,
 )
@@ -102,9 +102,9 @@ def _attitude(o, row, values, h):
     return values[:len(OF_Q)]
 
 
-FORM = Form((*OF_Q, *OF_OMEGA), MIDDLE, COUNTS * COUNTS, _fill, _unit, _attitude)
-coarse_advance, middle_advance, fine_advance = (advance_of(FORM, order=order) for order in ORDERS)
+FORM = Form((*OF_Q, *OF_OMEGA), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
 DRAGGED = FORM._replace(fill=partial(_fill, dragged=True))
-coarse_advance_with_drag, middle_advance_with_drag, fine_advance_with_drag = (
-    advance_of(DRAGGED, order=order) for order in ORDERS)
-coarse_between, middle_between, fine_between = (between_of(FORM, order=order) for order in ORDERS)
+advance_with_drag, coarse_advance_with_drag = (
+    advance_of(DRAGGED, ORDER), advance_of(DRAGGED, COARSE))
+between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

@@ -37,7 +37,7 @@ def longest(final, before, last, scale, tolerance2=1e-20, form=batch_directions.
     return float(found[0])
 
 
-def allowed(square, tolerance2=1e-20, order=batch_lane.MIDDLE):
+def allowed(square, tolerance2=1e-20, order=batch_lane.ORDER):
     return (tolerance2 / square) ** (0.5 / (order - 2))
 
 
