@@ -262,6 +262,7 @@ def advance(o, W, tolerance2, form):
     ]
     y1, lost = form.unit(o, y1, lost)
     q, q1 = row.q, form.attitude(o, row, y1, h)
+    # what was before comes first: in plain Python what was loaded is a view of its row
     for place, value in (
         (BEFORE_TIME, t),
         *((BEFORE_Q + i, value) for i, value in enumerate(q)),
