@@ -30,7 +30,7 @@ from rigid_body_sim.numerics.vectors import across, apply, cross, scaled
 from rigid_body_sim.scene.state import TIME as STATE_TIME
 
 ROUNDS = 64    # rounds of steps in the first call of the march
-COARSE_FROM = 1e-5    # the least tolerance, for a second, to which the shorter series is quicker
+COARSE_FROM = 3e-8    # the least tolerance, for a second, to which the shorter series is quicker
 LINE = 64    # bytes of the processor's cache: rows of lanes begin with one
 
 
