@@ -47,7 +47,11 @@ def test_messages_of_another_form_do_not_fit():
     # padding makes the sizes equal; only the length of the string differs
     assert len(longer) == len(one)
     rows = np.array([list(one), list(longer), list(other)], np.uint8)
-    assert Layout(schema(type_name), type_name, one).fits(rows).tolist() == [True, False, True]
+    layout = Layout(schema(type_name), type_name, one)
+    assert layout.fits(rows).tolist() == [True, False, True]
+    changed = rows[:1] ^ np.eye(len(one), dtype=np.uint8)
+    # two bytes tell the encoding, and four, behind the time, the length of the string
+    assert np.flatnonzero(~layout.fits(changed)).tolist() == [0, 1, 12, 13, 14, 15]
 
 
 def test_a_struct_that_only_resembles_a_time_keeps_its_numbers():
@@ -57,3 +61,30 @@ def test_a_struct_that_only_resembles_a_time_keeps_its_numbers():
     rows = np.frombuffer(b'\0\1\0\0' + b'\5\0\0\0\7\0\0\0', np.uint8)[np.newaxis]
     assert {name: column.tolist() for name, column in layout.unpack(rows).items()} == {
         't.sec': [5], 't.nanosed': [7]}
+
+
+@pytest.mark.parametrize(('fields', 'columns'), [
+    ('float64 x', {'t.x': ('<f8', ())}), ('float64 x\nfloat64 y', {'t': ('<f8', (2,))}),
+    ('float64[3] x', {'t.x': ('<f8', (3,))}), ('float64[1] x', {'t.x': ('<f8', ())}),
+    ('float64 x\nfloat64[2] y', {'t.x': ('<f8', ()), 't.y': ('<f8', (2,))}),
+    ('float64 x\nint32 y', {'t.x': ('<f8', ()), 't.y': ('<i4', ())})])
+def test_two_or_more_doubles_of_a_struct_are_one_column(fields, columns):
+    schemas = parse('a/msg/B', f'T t\n{"=" * 80}\nMSG: a/T\n{fields}\n')
+    layout = Layout(schemas, 'a/msg/B', b'\0\1\0\0' + bytes(24))
+    rows = np.zeros((1, layout.size), np.uint8)
+    assert {name: (column.dtype.str, column.shape[1:])
+            for name, column in layout.unpack(rows).items()} == columns
+    assert list(layout.components) == [name for name in columns if name == 't']
+
+
+def test_an_empty_sequence_is_no_column():
+    layout = Layout(parse('a/msg/B', 'int32 x\nfloat64[] y\n'), 'a/msg/B',
+                    b'\0\1\0\0' + bytes([3, 0, 0, 0, 0, 0, 0, 0]))
+    assert layout.columns == ['x']
+
+
+def test_nanoseconds_of_a_time_have_no_sign():
+    layout = Layout(parse('a/msg/B', f'T t\n{"=" * 80}\nMSG: a/T\nint32 sec\nuint32 nanosec\n'),
+                    'a/msg/B', b'\0\1\0\0' + bytes(8))
+    rows = np.frombuffer(b'\0\1\0\0' + b'\xfe\xff\xff\xff' + b'\xff' * 4, np.uint8)[np.newaxis]
+    assert layout.unpack(rows)['t'].tolist() == [-2 * 10**9 + 2**32 - 1]

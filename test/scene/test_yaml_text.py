@@ -4,6 +4,7 @@
 import pytest
 
 from rigid_body_sim import BadInput, Simulation, parse_scene
+from rigid_body_sim.scene import yaml_text
 
 SCENE = """\
 scene: stone
@@ -158,3 +159,48 @@ def test_overrides_of_the_wrong_kind_are_refused_in_one_line(overrides):
 
 def test_one_line_alone_is_an_override():
     assert Simulation('tennis_racket', overrides='body.mass=2.5').scene.body.mass == 2.5
+
+
+EFFECTS = """
+scene: s
+body: {mass: 1.0, inertia: [1, 2, 2.5]}
+constraint: free
+effects: [gravity: {g: 9.81}, internal_dissipation: {coefficient: 0.5}, drag: {linear: 1}]
+initial: {}
+"""
+
+
+@pytest.mark.parametrize(('override', 'place', 'effect'), [
+    ('effects.0.g=3', 0, {'gravity': {'g': 3}}), ('gravity.g=3', 0, {'gravity': {'g': 3}}),
+    ('effects.gravity.g=3', 0, {'gravity': {'g': 3}}),
+    ('effects[2].linear=3', 2, {'drag': {'linear': 3}}),
+    ('effects.2.angular=3', 2, {'drag': {'linear': 1, 'angular': 3}}),
+    ('effects.1={coefficient: 0.1}', 1, {'internal_dissipation': {'coefficient': 0.1}}),
+    ('effects.internal_dissipation={coefficient: 0.1}', 1,
+     {'internal_dissipation': {'coefficient': 0.1}})])
+def test_an_effect_is_changed_by_its_place_or_its_name(override, place, effect):
+    effects = parse_scene(EFFECTS, [override]).mapping['effects']
+    expected = yaml_text.parse(EFFECTS, 's')['effects']
+    assert effects == [*expected[:place], effect, *expected[place + 1:]]
+
+
+@pytest.mark.parametrize(('before', 'override', 'after'), [
+    (['a'], 'effects.0.k=3', [{'a': {'k': 3}}]), (['a'], 'a.k=3', [{'a': {'k': 3}}]),
+    (['b', {'a': None}], 'effects.1.k=3', ['b', {'a': {'k': 3}}]),
+    (['b', {'a': None}], 'effects.a.k.l=3', ['b', {'a': {'k': {'l': 3}}}]),
+    ([{'a': {}, 'b': {}}], 'effects.b.k=3', [{'a': {}, 'b': {'k': 3}}]),
+    ([{'a': {}, 'b': {}}], 'effects.0.k=3', [{'a': {'k': 3}, 'b': {}}])])
+def test_an_effect_that_is_a_name_or_stands_beside_others_is_changed(before, override, after):
+    mapping = {'effects': before}
+    yaml_text.override(mapping, override, 's')
+    assert mapping == {'effects': after}
+
+
+def test_an_effect_at_a_place_beyond_the_last_is_refused():
+    assert "no effect '3' in this scene; it lists ['gravity', 'internal_dissipation', 'drag']" in (
+        refusal(EFFECTS, ['effects.3.g=1']))
+
+
+@pytest.mark.parametrize('override', ['body.mass', '=3', '', '.=3'])
+def test_an_override_has_a_path_and_a_value(override):
+    assert 'an override is key.path=value' in refusal(EFFECTS, [override])

@@ -54,3 +54,38 @@ def test_a_piece_takes_a_second_a_fair_share_or_a_block_whatever_is_least():
     (1e-3, 1000, 125), (1e-4, 400, 500)])    # an eighth of what each of the workers does; 0.05 s
 def test_blocks_of_a_store(seconds, workers, runs):
     assert engine.block_runs(plan(1_000_000, block=2**15), seconds, workers) == runs
+
+
+def measured(monkeypatch, one, patience, seconds):
+    """Return the time of a run, and (first, stop) of what ran; runs take `seconds(count)`."""
+    calls, clock = [], [0.0]
+
+    def compute(_, first, stop):
+        calls.append((first, stop))
+        clock[0] += seconds(stop - first)
+    monkeypatch.setattr(engine, 'compute', compute)
+    monkeypatch.setattr(engine, 'time', types.SimpleNamespace(perf_counter=lambda: clock[0]))
+    one.template_run = 3
+    return engine.seconds_a_run(one, patience), calls
+
+
+@pytest.mark.parametrize(('size', 'block', 'counts'), [
+    (1000, 10 ** 6, [1, 4, 16, 64, 256, 1000]),    # at most all runs
+    (1000, 20, [1, 4, 16, 20]), (1, 20, [1]), (7, 20, [1, 4, 7]), (2, 20, [1, 2])])    # or a block
+def test_the_time_of_a_run_is_measured_on_more_and_more_runs_of_the_middle(
+        monkeypatch, size, block, counts):
+    took, calls = measured(
+        monkeypatch, plan(size, block=block), 1e9, lambda count: 0.25 + 0.5 * count)
+    assert took == 0.25 / counts[-1] + 0.5
+    compiling = {min(3, size - 1), (size - 1) // 2}
+    begun, runs = calls[:len(compiling)], calls[len(compiling):]
+    assert {(first, first + 1) for first in compiling} == set(begun)
+    assert runs == [((size - count) // 2, (size - count) // 2 + count) for count in counts]
+
+
+@pytest.mark.parametrize(('patience', 'counts'), [
+    (0.0, [1]), (4.9, [1]), (5.0, [1, 4]), (20.9, [1, 4]), (21.0, [1, 4, 16])])
+def test_runs_are_measured_while_there_is_patience_for_four_times_as_many(
+        monkeypatch, patience, counts):
+    _, calls = measured(monkeypatch, plan(1000), patience, float)    # a run takes 1 s
+    assert [stop - first for first, stop in calls[2:]] == counts

@@ -116,6 +116,15 @@ def both_drags(now, kind):
                                        strict=True))
 
 
+def shaped_drags(now, kind):
+    """Return the same with matrices, in body axes, and with squares."""
+    v, omega = now.turn.inv().apply(now.at(CENTER)[1]), now.omega
+    force = -(np.array(MATRIX) + 0.4 * np.linalg.norm(v) * np.eye(3)) @ v
+    couple = -(0.2 * np.eye(3) + np.linalg.norm(omega) * np.array(MATRIX)) @ omega
+    pushed, moment = at_point(now, CENTER, now.turn.apply(force), kind)
+    return pushed, moment + now.turn.apply(couple)
+
+
 def body_torque(now, kind):
     return np.zeros(3), now.turn.apply([1.0, -2.0, 3.0])
 
@@ -172,6 +181,10 @@ def magnet_in_field(now, kind):
     return force, moment + np.cross(m, [x * y, z * z, 1.7 * x])
 
 
+MATRIX = [[0.5, 0.1, -0.2], [0.1, 0.7, 0.05], [-0.2, 0.05, 0.9]]
+SHAPED = f'drag: {{linear: {MATRIX}, quadratic: 0.4, angular: 0.2, angular_quadratic: {MATRIX}}}'
+AS_NUMBERS = (f'drag: {{linear: {np.diag([0.7] * 3).tolist()}, '
+              f'angular: {np.diag([0.3] * 3).tolist()}}}')
 HERE = 'at: [0.4, -0.1, 0.7]'
 SPRING = 'spring: {at: [0.4, -0.1, 0.7], anchor: [1, 0.5, -2], stiffness: 3'
 EVERYWHERE, NO_AXIS, FREE = ('free', 'pivot', 'hinge'), ('free', 'pivot'), ('free',)
@@ -180,6 +193,8 @@ CASES = {
     'drag: {linear: 0.7}': (linear_drag, EVERYWHERE),
     'drag: {angular: 0.3}': (angular_drag, EVERYWHERE),
     'drag: {linear: 0.7, angular: 0.3}': (both_drags, EVERYWHERE),
+    AS_NUMBERS: (both_drags, EVERYWHERE),
+    SHAPED: (shaped_drags, EVERYWHERE),
     'torque: {value: [1, -2, 3]}': (body_torque, EVERYWHERE),
     'torque: {value: [1, -2, 3], frame: world}': (world_torque, EVERYWHERE),
     f'torque: {{value: {text(FORMULA)}}}': (
@@ -287,7 +302,7 @@ def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
 
 @pytest.mark.parametrize(('effects', 'kind'), [
     (effects, kind) for effects, kind in PLACES
-    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1'))])
+    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1')) and effects != SHAPED])
 def test_a_power_series_is_given_the_same(effects, kind):
     """Pull: constant + arm x R^T force + R^T couple + drag omega; a free body is moved by it."""
     scene, now = scene_of(effects, kind), drawn(kind, 4)

@@ -6,6 +6,7 @@ The references in test/data are made by Gragg's extrapolation.
 
 import json
 import pathlib
+import types
 
 import numpy as np
 import pytest
@@ -176,6 +177,47 @@ def test_a_reference_computed_now_is_the_cached_one():
     with mp.workprec(BITS):
         assert max(map(apart, cached.orientation, now.orientation)) < 1e-33
         assert max(map(apart, cached.omega, now.omega)) < 1e-31
+
+
+@pytest.mark.parametrize('kind', ['free', 'table'])
+@pytest.mark.parametrize(('turn', 'change', 'digits'), [
+    (lambda t: 1e-30 * (1 - t) * t, lambda t, of: 0, -np.log10(0.25e-30)),
+    (lambda t: 0, lambda t, of: 1e-28 * of * t, 28),    # relative to omega, 3 rad/s at the end
+    (lambda t: 0, lambda t, of: 1e-28 * t, -np.log10(0.5e-28)),    # but not where it is below 1
+    (lambda t: 1e-27 * t, lambda t, of: 1e-28 * of, 27), (lambda t: 0, lambda t, of: 0, 60)])
+def test_digits_and_floor_are_the_worst_of_all_times(monkeypatch, kind, turn, change, digits):
+    """Known motions about z: of the check, and of eight draws, which differ from the best."""
+    class Motion:
+        def __init__(self, made, bits):
+            self.bits, self.draw = bits, made.move
+
+        def go(self, time):
+            """Return q and omega; their errors are those of the draw, or of the check."""
+            angle, rate = mpf(2) * time, mpf(max(4 * time - 1, 0.5))
+            if self.bits == reference.CHECK_BITS:
+                angle, rate = angle + turn(time), rate + change(time, rate)
+            elif self.bits == reference.FLOOR_BITS:
+                angle += {2: 0.01, 5: 0.02 * time}.get(self.draw, 0)
+                rate -= 0.1 * self.draw
+            half = angle / 2
+            return (mpf(0), mpf(0), mp.sin(half), mp.cos(half)), (mpf(0), mpf(0), rate)
+
+    monkeypatch.setattr(inputs, 'of', lambda scene, move: types.SimpleNamespace(
+        kind=kind, move=move))
+    monkeypatch.setattr(inputs, 'Moved', lambda draw: draw)
+    monkeypatch.setattr(reference, 'Ball' if kind == 'table' else 'Turning', Motion)
+    parts = []
+    found = reference.compute(None, 1.0, progress=parts.append)
+    times = np.arange(1, reference.SAMPLES + 1) / reference.SAMPLES
+    assert found.times.tolist() == times.tolist()
+    assert found.digits == pytest.approx(digits, abs=1e-6)
+    assert found.floor == pytest.approx(np.maximum(0.01, 0.02 * times))
+    assert found.floor_omega == pytest.approx(0.7 + 0 * times)
+    count = 10 * reference.SAMPLES
+    assert parts == pytest.approx(np.arange(1, count + 1) / count)
+    errors = found.errors(np.array([[*map(float, one), *map(float, other)] for one, other in zip(
+        found.orientation, found.omega)]))
+    assert np.max(errors) < 1e-15
 
 
 def test_half_an_ulp_moves_equal_numbers_together_and_leaves_zero():
