@@ -45,15 +45,15 @@ def direction(seen):
 
 
 def test_omega_turns_by_whole_turns_as_predicted_and_by_the_rest_as_seen():
-    """In 4 s theory says 24 rad; what is seen is 0.1, 2.0 and then 1.2 rad further."""
-    ahead = {10.0: 0.0, 11.0: 0.1, 13.0: 2.0, 14.0: 1.2}
+    """In 4 s theory says 24 rad; what is seen is 0.1, 2.0 and then 4.8 rad further."""
+    ahead = {10.0: 0.0, 11.0: 0.1, 13.0: 2.0, 14.0: 4.8}
     expected = Turning(lambda time: 6.0 * time,
                        direction(lambda time: 6.0 * time + ahead[time]), state(10.0))
     expected.look(state(11.0))
     expected.look(state(13.0))
     expected.look(state(14.0))
     check(expected.compared(), 1e-13, quantity='omega round the axis', predicted_rate=6.0,
-          measured_rate=6.3, relative_difference=0.05)
+          measured_rate=7.2, relative_difference=0.2)
 
 
 def test_before_omega_is_seen_to_turn_its_rate_is_that_of_the_next_second():
@@ -83,12 +83,12 @@ def test_the_least_energy_is_that_of_the_angular_momentum_about_the_largest_axis
     ((0.0, 0.1 * (1.0 + 0.35e-9), 0.0), (0.0, 0.1, 0.0), True),
     ((0.0, 0.1 * (1.0 + 0.7e-9), 0.0), (0.0, 0.1, 0.0), False),
     # the angular momentum is 30 or 0.3, of which a thousandth may lie across
-    ((0.021, 10.0, 0.0), (0.021, 10.0, 0.0), True),
-    ((0.042, 10.0, 0.0), (0.042, 10.0, 0.0), False),
-    ((0.0, 10.0, 0.0105), (0.0, 10.0, 0.0105), True),
-    ((0.0, 10.0, 0.021), (0.0, 10.0, 0.021), False),
-    ((2.1e-4, 0.1, 0.0), (2.1e-4, 0.1, 0.0), True),
-    ((4.2e-4, 0.1, 0.0), (4.2e-4, 0.1, 0.0), False),
+    ((0.024, 10.0, 0.0), (0.024, 10.0, 0.0), True),
+    ((0.036, 10.0, 0.0), (0.036, 10.0, 0.0), False),
+    ((0.0, 10.0, 0.012), (0.0, 10.0, 0.012), True),
+    ((0.0, 10.0, 0.018), (0.0, 10.0, 0.018), False),
+    ((2.4e-4, 0.1, 0.0), (2.4e-4, 0.1, 0.0), True),
+    ((3.6e-4, 0.1, 0.0), (3.6e-4, 0.1, 0.0), False),
     # it turns about another axis without loss
     ((10.0, 0.0, 0.0), (10.0, 0.0, 0.0), False)])
 def test_heat_has_ended_once_the_energy_stays_and_the_wobble_is_gone(before, after, settled):
