@@ -96,7 +96,7 @@ def test_events_stand_at_their_ticks(flipping):
     for (stamp, message), event in zip(events, simulation.events, strict=True):
         values = {pair.key: pair.value for pair in message.values}
         assert (message.name, values['tick'], values['time']) == (
-            event.name, str(event.tick), repr(event.time))
+            event.name, str(event.tick), repr(float(event.time)))
         assert stamp == found['/pose'][event.tick][0]
 
 

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 from near import near
+from scipy.integrate import solve_ivp
 
 from rigid_body_sim.theory import asymmetric_top as theory
 from rigid_body_sim.theory import euler_equations, largest_axis
@@ -61,16 +62,64 @@ def test_tennis_racket_by_hand():
 
 
 def test_erratum():
-    """I1 = 2, I2 = 6: as written the frequency is too large by sqrt(3).
+    """I1 = 3, I2 = 9: as written the frequency is too large by sqrt(3).
 
-    The equations are not Euler's.
+    The second equation is not Euler's.
     """
-    assert np.abs(matrix(2.0, 6.0, 4.0, theory.linear_rates_as_written)
-                  - jacobian(2.0, 6.0, 4.0)).max() > 1.0
-    written = matrix(2.0, 6.0, 4.0, theory.linear_rates_as_written)
-    squared = theory.frequency_squared_as_written(OMEGA0, 2.0, 6.0, 4.0)
+    written = matrix(3.0, 9.0, 5.0, theory.linear_rates_as_written)
+    assert written == near(np.diag([1.0, 3.0, 1.0]) @ jacobian(3.0, 9.0, 5.0), 1e-14)
+    assert np.abs(written - jacobian(3.0, 9.0, 5.0)).max() > 1.0
+    squared = theory.frequency_squared_as_written(OMEGA0, 3.0, 9.0, 5.0)
     assert (written @ written)[0, 0] == near(-squared, 1e-14)
-    assert squared / theory.frequency_squared(OMEGA0, 2.0, 6.0, 4.0) == near(3.0, 1e-14)
+    assert squared / theory.frequency_squared(OMEGA0, 3.0, 9.0, 5.0) == near(3.0, 1e-14)
+
+
+MOMENTS = 1.0, 2.0, 2.25
+SEPARATRIX = 0.75, 1.0, 1.0
+# on either side of the separatrix, far from it and near to it
+TUMBLING = [(0.5, 2.0, 0.4), (2.0, 0.5, -0.2), (-0.3, 0.1, 1.5), (1e-3, 3.0, 2e-3),
+            (2e-3, 3.0, 1e-3), (0.75 + 2.0**-20, 1.0, 1.0), (0.75, 1.0, 1.0 + 2.0**-20)]
+
+
+# measured: at most 6e-11
+@pytest.mark.parametrize('omega', TUMBLING)
+def test_the_time_between_flips_is_that_of_euler_s_equations(omega):
+    """omega2 changes its sign at equal times; SciPy integrates Euler's equations."""
+    seconds = theory.time_between_flips(MOMENTS, omega)
+
+    def crossing(_, omega):
+        return omega[1]
+    run = solve_ivp(lambda _, omega: euler_equations.angular_acceleration(MOMENTS, omega),
+                    (0.0, 2.1 * seconds), omega, method='DOP853', rtol=1e-13, atol=1e-15,
+                    events=crossing)
+    first, second = run.t_events[0][:2]
+    assert second - first == near(seconds, 1e-9)
+
+
+# measured: at most 2e-16
+@pytest.mark.parametrize('omega', [*TUMBLING, (1e-140, 1e-135, 1e-140)])
+def test_the_time_between_flips_keeps_its_digits(omega):
+    """2 K(m)/lambda in 60 digits, from the energy and the angular momentum."""
+    with mpmath.workdps(60):
+        I1, I2, I3 = map(mpmath.mpf, MOMENTS)
+        w1, w2, w3 = (mpmath.mpf(w) ** 2 for w in omega)
+        energy, square = (sum(moment**power * w for moment, w in zip((I1, I2, I3), (w1, w2, w3)))
+                          for power in (1, 2))    # twice the energy
+        rest, turn = (I3 - I2) * (square - energy * I1), (I2 - I1) * (energy * I3 - square)
+        lead, side = max(rest, turn), min(rest, turn)
+        exact = 2 * mpmath.ellipk(side / lead) * mpmath.sqrt(I1 * I2 * I3 / lead)
+        expected = float(exact)
+    assert theory.time_between_flips(MOMENTS, omega) == near(expected, 1e-14)
+
+
+@pytest.mark.parametrize(('moments', 'omega'), [
+    ((1.0, 1.0, 2.0), (0.3, 2.0, 0.4)), ((1.0, 2.0, 2.0), (0.3, 2.0, 0.4)),
+    ((2.0, 1.0, 3.0), (0.3, 2.0, 0.4)), ((1.0, 3.0, 2.0), (0.3, 2.0, 0.4)),
+    ((0.0, 1.0, 1.5), (0.3, 2.0, 0.4)),
+    (MOMENTS, (0.0, 0.0, 0.0)), (MOMENTS, (3.0, 0.0, 0.0)), (MOMENTS, (0.0, 3.0, 0.0)),
+    (MOMENTS, (0.0, 0.0, 3.0)), (MOMENTS, SEPARATRIX)])
+def test_without_flips_there_is_no_time_between_them(moments, omega):
+    assert theory.time_between_flips(moments, omega) is None
 
 
 def test_least_energy_is_about_the_largest_axis():

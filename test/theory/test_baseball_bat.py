@@ -38,6 +38,8 @@ def test_erratum():
     """
     length, gyration = 0.6, 1.2 / 12.0**0.5
     assert theory.center_of_percussion_as_written(length, gyration) == near(0.48**0.5, 1e-15)
-    wrong = 1.0 - theory.reaction_ratio_as_written(0.8, length, gyration)
+    ratio = theory.reaction_ratio_as_written(0.8, length, gyration)
+    assert ratio == near(1.0 - 0.8 / 0.48**0.5, 1e-14)
+    wrong = 1.0 - ratio
     assert abs(M * length * theory.angular_acceleration(1.0, 0.8, M, length, gyration)
                - wrong) > 0.1

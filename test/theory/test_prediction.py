@@ -33,6 +33,8 @@ def compared(scene, overrides, seconds, rate=100.0):
     ('kater_pendulum_from_p', [], 10.0, 'turning point'),
     ('kater_pendulum', ['initial.angle=3.0', 'initial.rate=0.1'], 40.0, 'turning point'),
     ('kater_pendulum', ['constraint.hinge.axis=[0.0, 1.0, 1.0]'], 10.0, 'turning point'),
+    ('kater_pendulum', ['gravity.g=0.5'], 40.0, 'turning point'),
+    ('kater_pendulum', ['body.center_of_mass=[0, 0.3, -0.4]'], 10.0, 'turning point'),
     ('heavy_top', [], 2.0, 'turning point'),
     ('heavy_top', ['initial.tilt=2.5', 'initial.spin=-20'], 2.0, 'turning point'),
     ('heavy_top', ['body.center_of_mass=[0, 0, -0.1]'], 2.0, 'turning point'),
@@ -87,8 +89,24 @@ def test_ball_rolls_when_and_as_fast_as_predicted(scene, overrides):
     ('driven_body', ['torque.value=[0, 1, 1]']),
     ('driven_body', ['torque.frame=world']),
     ('driven_body', ['torque={times: [1.0], values: [[0, 0, 1]]}']), ('thin_rod', []),
+    ('driven_body', ['torque={times: [1.0, 2.0], values: [[0, 0, 1], [0, 0, 0]]}']),
+    ('driven_body', ['body.inertia=[1.3, 0.8, 0.8]', 'torque.value=[0.5, 0, 1]']),
+    ('driven_body', ['body.inertia=[1.3, 0.8, 0.8]', 'torque.value=[0.5, 1, 0]']),
+    ('driven_body', ['effects=[internal_dissipation: {coefficient: 0.1}, '
+                     'torque: {value: [0, 0, 0.5]}]']),
+    ('driven_body', ['effects=[drag: {angular: 0.1}]']),
     ('kater_pendulum', ['initial.angle=0.0']), ('kater_pendulum', ['initial.rate=20.0']),
-    ('kater_pendulum', ['effects=[]']),
+    ('kater_pendulum', ['initial.rate=7.5']), ('kater_pendulum', ['effects=[]']),
+    ('kater_pendulum', ['body.center_of_mass=[0, 0.4, 0]',
+                        'constraint={hinge: {axis: [0, 1, 0]}}']),
+    ('kater_pendulum', ['body.center_of_mass=[0.4, 0, 0]',
+                        'constraint={hinge: {axis: [0, 0, 1]}}']),
+    ('baseball_bat', ['initial.rate=1.0']),
+    ('baseball_bat', ['effects=[strike: {impulse: [0, 2, 0], distance: 0.5}, '
+                      'strike: {impulse: [0, 1, 0], distance: 0.5}]']),
+    ('baseball_bat', ['body.center_of_mass=[0, 0, 0.1]',
+                      'effects=[strike: {impulse: [0, 2, 0], point: [0.5, 0, 0]}]']),
+    ('rolling_disk', []), ('billiard_center', ['effects=[]']),
     ('kater_pendulum', ['gravity.g=0']), ('symmetric_top', ['initial.angular_velocity=[0, 0, 2]']),
     ('heavy_top', ['gravity.g=0']),
     ('heavy_top', ['body.inertia=[0.03, 0.031, 0.01]']),
@@ -128,7 +146,7 @@ def test_heat_ends_at_the_least_energy():
 
 
 @pytest.mark.parametrize('overrides',
-                         [[], ['strike.distance=0.3'],
+                         [[], ['strike.distance=0.3'], ['body.center_of_mass=[0.55, 0, 0.2]'],
                           ['strike.impulse=[0, -1, 0]', 'constraint.hinge.axis=[0, 0, -1]']])
 def test_bat_turns_as_the_blow_says(overrides):
     found = compared('baseball_bat', overrides, 1.0)
