@@ -4,7 +4,7 @@
 import pytest
 
 from rigid_body_sim import BadInput, Simulation, parse_scene
-from rigid_body_sim.scene import yaml_text
+from rigid_body_sim.scene.yaml_text import override, parse
 
 SCENE = """\
 scene: stone
@@ -161,46 +161,69 @@ def test_one_line_alone_is_an_override():
     assert Simulation('tennis_racket', overrides='body.mass=2.5').scene.body.mass == 2.5
 
 
-EFFECTS = """
-scene: s
-body: {mass: 1.0, inertia: [1, 2, 2.5]}
+LISTED = """\
+scene: stone
+body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
 constraint: free
-effects: [gravity: {g: 9.81}, internal_dissipation: {coefficient: 0.5}, drag: {linear: 1}]
-initial: {}
+effects:
+- gravity
+- {drag: }
+- torque: {value: [0, 0, 1], frame: body}
+initial: {euler_zyz: [0.1, 0.2, 0.3], spin: 2.0}
 """
 
 
-@pytest.mark.parametrize(('override', 'place', 'effect'), [
-    ('effects.0.g=3', 0, {'gravity': {'g': 3}}), ('gravity.g=3', 0, {'gravity': {'g': 3}}),
-    ('effects.gravity.g=3', 0, {'gravity': {'g': 3}}),
-    ('effects[2].linear=3', 2, {'drag': {'linear': 3}}),
-    ('effects.2.angular=3', 2, {'drag': {'linear': 1, 'angular': 3}}),
-    ('effects.1={coefficient: 0.1}', 1, {'internal_dissipation': {'coefficient': 0.1}}),
-    ('effects.internal_dissipation={coefficient: 0.1}', 1,
-     {'internal_dissipation': {'coefficient': 0.1}})])
-def test_an_effect_is_changed_by_its_place_or_its_name(override, place, effect):
-    effects = parse_scene(EFFECTS, [override]).mapping['effects']
-    expected = yaml_text.parse(EFFECTS, 's')['effects']
-    assert effects == [*expected[:place], effect, *expected[place + 1:]]
+@pytest.mark.parametrize(('assignment', 'keys', 'expected'), [
+    ('gravity.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects.gravity.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects.0.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects[0].gravity=7', ['effects', 0], {'gravity': {'gravity': 7}}),
+    ('drag.linear=2', ['effects', 1], {'drag': {'linear': 2}}),
+    ('effects.1.linear=2', ['effects', 1], {'drag': {'linear': 2}}),
+    ('effects.drag=2', ['effects', 1], {'drag': 2}),
+    ('effects.1=2', ['effects', 1], {'drag': 2}),
+    ('torque.body=2', ['effects', 2, 'torque', 'body'], 2),    # a key of the scene, too
+    ('torque.value.2=3', ['effects', 2], {'torque': {'value': [0, 0, 3], 'frame': 'body'}}),
+    (' effects[2].value[0] = 3', ['effects', 2],
+     {'torque': {'value': [3, 0, 1], 'frame': 'body'}}),
+    ('effects=[torque]', ['effects'], ['torque']),
+    ('body.inertia=[+1, 2., 3]', ['body', 'inertia'], [1, 2.0, 3]),
+    ('body.inertia[2]=4', ['body'], {'mass': 1.0, 'inertia': [1.0, 2.0, 4]}),
+    ('body.density=3', ['body'], {'density': 3, 'inertia': [1.0, 2.0, 3.0]}),
+    ('about=a=b', ['about'], 'a=b'),
+    ('initial.tilt=1', ['initial'], {'tilt': 1, 'spin': 2.0}),
+    ('initial.angular_velocity=[1, 2, 3]', ['initial'],
+     {'euler_zyz': [0.1, 0.2, 0.3], 'angular_velocity': [1, 2, 3]}),
+    ('initial.position=[1, 2, 3]', ['initial'],
+     {'euler_zyz': [0.1, 0.2, 0.3], 'spin': 2.0, 'position': [1, 2, 3]}),
+    ('view.camera.far=true', ['view'], {'camera': {'far': True}})])
+def test_an_override_sets_one_value_and_leaves_the_others(assignment, keys, expected):
+    mapping, wanted = parse(LISTED, 'stone'), parse(LISTED, 'stone')
+    holder = wanted
+    for key in keys[:-1]:
+        holder = holder[key]
+    holder[keys[-1]] = expected
+    override(mapping, assignment, 'stone')
+    assert mapping == wanted
 
 
-@pytest.mark.parametrize(('before', 'override', 'after'), [
-    (['a'], 'effects.0.k=3', [{'a': {'k': 3}}]), (['a'], 'a.k=3', [{'a': {'k': 3}}]),
-    (['b', {'a': None}], 'effects.1.k=3', ['b', {'a': {'k': 3}}]),
-    (['b', {'a': None}], 'effects.a.k.l=3', ['b', {'a': {'k': {'l': 3}}}]),
-    ([{'a': {}, 'b': {}}], 'effects.b.k=3', [{'a': {}, 'b': {'k': 3}}]),
-    ([{'a': {}, 'b': {}}], 'effects.0.k=3', [{'a': {'k': 3}, 'b': {}}])])
-def test_an_effect_that_is_a_name_or_stands_beside_others_is_changed(before, override, after):
-    mapping = {'effects': before}
-    yaml_text.override(mapping, override, 's')
-    assert mapping == {'effects': after}
-
-
-def test_an_effect_at_a_place_beyond_the_last_is_refused():
-    assert "no effect '3' in this scene; it lists ['gravity', 'internal_dissipation', 'drag']" in (
-        refusal(EFFECTS, ['effects.3.g=1']))
-
-
-@pytest.mark.parametrize('override', ['body.mass', '=3', '', '.=3'])
-def test_an_override_has_a_path_and_a_value(override):
-    assert 'an override is key.path=value' in refusal(EFFECTS, [override])
+@pytest.mark.parametrize(('assignment', 'problem'), [
+    ('effects.3.g=1', "no effect '3' in this scene; it lists ['gravity', 'drag', 'torque']"),
+    ('effects.strike.g=1', "no effect 'strike' in this scene; it lists ['gravity', 'drag'"),
+    ('torque.value.3=1', "no place '3' in a list of 3; places run from 0 to 2"),
+    ('torque.value.x=1', "no place 'x' in a list of 3; places run from 0 to 2"),
+    ('torque.value.-1=1', "no place '-1' in a list of 3; places run from 0 to 2"),
+    ('torque.value.3.x=1', "no place '3' in a list of 3; places run from 0 to 2"),
+    ('body.mass.x=1', "'x' lies inside a plain value; end the path at the value itself"),
+    ('body.mass.x.y=1', "'x' lies inside a plain value; end the path at the value itself"),
+    ('=1', "got '=1'; an override is key.path=value, for example body.mass=2.0"),
+    ('about=a: b', 'mapping values are not allowed here'),
+    ('mass', "got 'mass'; an override is key.path=value, for example body.mass=2.0")])
+def test_an_override_of_what_is_not_there_is_refused(assignment, problem):
+    mapping = parse(LISTED, 'stone')
+    with pytest.raises(BadInput) as refused:
+        override(mapping, assignment, 'stone')
+    path = assignment.partition('=')[0]
+    assert str(refused.value).startswith(f'stone: {path or assignment!r}')
+    assert f': {problem}' in str(refused.value)
+    assert mapping == parse(LISTED, 'stone')
