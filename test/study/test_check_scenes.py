@@ -31,7 +31,7 @@ QUICK = [name for name in SYSTEMS if not name.startswith((
     'billiard', 'driven', 'major', 'baseball', 'falling', 'rolling_', 'euler_disk', 'rattleback',
     'tippe', 'rising', 'routh', 'chaplygin', 'tossed', 'kapitza', 'librating'))]
 MARKS = {'sleeping_top': LONG_IN_PYTHON, 'kater_pendulum': pytest.mark.without_numba}
-KEPT = 'predicted', 'tolerance', 'unit', 'bound', 'absolute', 'as_written', 'detail'
+KEPT = 'predicted', 'tolerance', 'unit', 'as_written', 'detail'
 
 
 def table(*arguments, capsys, status=0):
