@@ -117,6 +117,15 @@ def test_long_gaps_are_skipped_and_short_ones_computed(comparison):
     assert later._rerun.skipped == []
 
 
+def test_a_topic_may_have_no_messages_beyond_a_gap_or_none_at_all(comparison):
+    stretch = recorded([0, 5000])
+    stretch['/energy'] = {name: column[:1] for name, column in stretch['/energy'].items()}
+    del stretch['/omega']
+    comparison.take(stretch)
+    assert (comparison.ticks, comparison.messages, comparison.parting) == (2, 3, None)
+    assert set(comparison.largest) == {'orientation', 'position', 'energy'}
+
+
 def test_a_tick_that_comes_too_late_and_what_is_not_finite_are_refused(comparison):
     comparison.take(recorded(range(5)))
     with pytest.raises(BadInput, match='tick 4 comes too late'):

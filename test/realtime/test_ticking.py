@@ -171,6 +171,28 @@ def test_long_waits_look_after_commands():
     assert 95 <= len(looks) <= 101
 
 
+@pytest.mark.parametrize(('rate', 'looks'), [(1000.0, 0), (100.0, 0), (50.0, 2)])
+def test_commands_are_looked_after_while_a_wait_is_longer_than_10_ms(rate, looks):
+    clock, found = Clock(), []
+    run(Work(clock, 3, between=found.append), clock, rate=rate)
+    assert len(found) == looks
+
+
+def test_a_pause_while_it_waits_holds_the_tick_back(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep',
+                        lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
+
+    def between(work):
+        ticker.pause()
+        if clock.time - START > 1500 * MILLISECOND:
+            ticker.stop()
+    work = Work(clock, 3, between=between)
+    ticker = Ticker(work, clock, 1.0, 1.0, False, lambda: None)
+    ticker.run()
+    assert work.times == [0]
+
+
 def test_pause_and_steps_leave_out_no_tick_and_no_time(monkeypatch):
     clock = Clock()
     monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep',
@@ -255,7 +277,10 @@ def test_a_tick_that_comes_more_than_a_period_late_is_an_overrun(rate, factor, c
     (103 * MILLISECOND, 0), (103 * MILLISECOND + 1, 102 * MILLISECOND + 1)])
 def test_the_schedule_slips_by_more_than_two_periods_and_a_tenth_of_a_second(cost, slipped):
     clock = Clock()
-    assert run(Work(clock, 2, {0: cost}), clock).slipped == slipped
+    work = Work(clock, 2, {0: cost})
+    assert run(work, clock, skip_publish=True).slipped == slipped
+    # a tick that is only late is left out
+    assert [publish for _, _, publish in work.runs] == [True, slipped > 0]
 
 
 @pytest.mark.parametrize(('step', 'jumps'), [
