@@ -23,8 +23,7 @@ class Curve:
     """
 
     def __init__(self, count, points=32768):
-        self._group = max(1, math.ceil(2 * count / points))
-        self._group = 1 if count <= points else self._group
+        self._group = 1 if count <= points else math.ceil(2 * count / points)
         self._times, self._values = [], []
         self._pending = None
 

@@ -71,7 +71,7 @@ class Pace:
     """
 
     def __init__(self, rate: float, tick_rate: float):
-        self._ratio = min(Fraction(rate) / Fraction(tick_rate), Fraction(1)).as_integer_ratio()
+        self._ratio = (Fraction(rate) / Fraction(tick_rate)).as_integer_ratio()
 
     def due(self, tick: int, count: int) -> list[int]:
         """Return the ticks at which the topic is due, among `count` ticks from `tick` on."""

@@ -6,6 +6,7 @@ import types
 import numpy as np
 import pytest
 
+from rigid_body_sim.analysis import align
 from rigid_body_sim.analysis.align import aligned
 
 
@@ -43,12 +44,38 @@ def test_every_message_comes_once_and_nothing_later_is_older(counts, seed):
     assert found == {topic: stamps.tolist() for topic, stamps in times.items()}
 
 
+def stretches(blocks, topics):
+    """Return what `aligned` yields of (topic, log times) in turn, as plain data."""
+    recording = types.SimpleNamespace(
+        topics={topic: types.SimpleNamespace(
+            count=sum(len(times) for name, times in blocks if name == topic)) for topic in topics},
+        blocks=lambda topics, progress: (
+            (topic, {'log_time': np.array(times)}) for topic, times in blocks))
+    return [{topic: columns['log_time'].tolist() for topic, columns in stretch.items()}
+            for stretch in aligned(recording, topics)]
+
+
+def test_what_is_certain_to_be_complete_does_not_wait():
+    """A log time may come again in the next block of its topic."""
+    assert stretches([('a', [1]), ('a', [3]), ('b', [3]), ('a', [3, 5]), ('b', [4, 9]),
+                      ('a', [8, 9])], 'ab') == [
+        {'a': [1]}, {'a': [3, 3], 'b': [3, 4]}, {'a': [5, 8, 9], 'b': [9]}]
+
+
+def test_what_waits_too_long_for_another_topic_comes_alone(monkeypatch):
+    monkeypatch.setattr(align, 'LARGEST', 3)
+    assert stretches([('a', [1, 2]), ('a', [3]), ('a', [4, 5]), ('a', [6, 7]), ('b', [8])],
+                     'ab') == [{'a': [1, 2, 3, 4]}, {'a': [5, 6, 7], 'b': [8]}]
+
+
 def test_columns_that_not_all_messages_have_are_left_out():
     """A frame that gets another name, of another length, does this."""
-    from rigid_body_sim.analysis import align
-    waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2))},
-                      {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2))},
-                      {'log_time': np.arange(5, 7), 'x': np.ones((2, 2))}]}
+    waiting = {'/a': [{'log_time': np.arange(3), 'x': np.zeros((3, 2)), 'w': np.zeros(3),
+                       'z': np.zeros((3, 4))},
+                      {'log_time': np.arange(3, 5), 'y': np.zeros(2), 'x': np.ones((2, 2)),
+                       'z': np.zeros((2, 4))},
+                      {'log_time': np.arange(5, 7), 'x': np.ones((2, 2)),
+                       'z': np.zeros((2, 5))}]}
     taken = align._take(waiting, '/a', 5)
     assert (set(taken) == {'log_time', 'x'} and taken['log_time'].tolist() == [0, 1, 2, 3, 4, 5]
             and taken['x'].sum() == 6.0)

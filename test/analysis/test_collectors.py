@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from rigid_body_sim.analysis.collectors import Curve, Samples
+from rigid_body_sim.analysis.collectors import Curve, Head, Samples
 
 RANDOM = np.random.default_rng(7)
 
@@ -44,6 +44,43 @@ def test_a_curve_of_one_column_and_of_nothing():
     assert [part.tolist() for part in curve.curve()] == [[], []]
     curve.add(np.arange(4.0), np.arange(4.0))
     assert curve.curve()[1].tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_a_curve_as_long_as_wanted_is_kept_whole_though_it_never_changes():
+    curve = Curve(32768)
+    curve.add(np.arange(32768.0), np.zeros(32768))
+    assert curve.curve()[0].tolist() == list(range(32768))
+    longer = Curve(32769)    # of each three two are kept, here the first, twice
+    longer.add(np.arange(32769.0), np.zeros(32769))
+    assert longer.curve()[0].tolist() == np.repeat(np.arange(0, 32769, 3), 2).tolist()
+
+
+def test_the_first_of_some_curves_is_returned_unless_another_is_wanted():
+    curve = Curve(2)
+    curve.add(np.arange(2.0), np.array([[1.0, 2.0], [3.0, 4.0]]))
+    assert curve.curve()[1].tolist() == [1.0, 3.0]
+    assert curve.curve(1)[1].tolist() == [2.0, 4.0]
+
+
+def test_few_samples_are_all_kept_and_of_none_there_are_none():
+    few = Samples(5, 100)
+    few.add(np.arange(5))
+    assert few.columns()[0].tolist() == [0, 1, 2, 3, 4]
+    assert Samples(0, 100).columns() == []
+    none = Samples(0, 100)
+    none.add(np.arange(0))
+    assert none.columns()[0].tolist() == []
+
+
+def test_the_head_is_the_first_samples_whatever_the_blocks():
+    head = Head(7)
+    assert head.columns() == []
+    for begin, end in ((0, 3), (3, 5), (5, 9), (9, 10)):
+        numbers = np.arange(begin, end)
+        head.add(numbers, np.stack([numbers, -numbers], axis=1))
+    first, second = head.columns()
+    assert first.tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert second.tolist() == [[k, -k] for k in range(7)]
 
 
 def test_samples_are_evenly_spaced_across_blocks():

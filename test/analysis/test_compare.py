@@ -73,6 +73,8 @@ def test_the_same_bits_are_told_as_such(comparison):
     assert {name: worst['difference'] for name, worst in comparison.largest.items()} == {
         'orientation': 0.0, 'position': 0.0, 'angular_velocity': 0.0, 'energy': 0.0}
     assert comparison.turned == pytest.approx(15 * 3.0 / RATE)
+    # where it was first as large
+    assert {worst['since_start'] for worst in comparison.largest.values()} == {0.0}
     scales = {name: worst['scale'] for name, worst in comparison.largest.items()}
     assert scales == pytest.approx({'orientation': 1.0, 'position': 7.0, 'angular_velocity': 3.0,
                                     'energy': 7.0})
@@ -96,6 +98,13 @@ def test_the_first_parting_is_that_of_the_earliest_tick_whatever_the_topic(compa
     assert comparison.largest['angular_velocity']['difference'] == 9.0
 
 
+def test_of_quantities_that_part_at_the_same_tick_the_first_is_told(comparison):
+    comparison.take(recorded(range(2), pose=('pose.position', (1, 1), 0.25),
+                             energy=('data', 1, 1e-12)))
+    assert (comparison.parting['tick'], comparison.parting['quantity']) == (1, 'position')
+    assert comparison.largest['position']['scale'] == (0.5**2 + 0.25**2)**0.5
+
+
 def test_minus_zero_is_another_bit_but_no_difference(comparison):
     stretch = recorded(range(3))
     stretch['/omega']['vector'][1, 0] = -0.0
@@ -115,6 +124,15 @@ def test_long_gaps_are_skipped_and_short_ones_computed(comparison):
     later = Comparison(Rerun(), TOPICS, types.SimpleNamespace(start=START, ticks=100))
     later.take(recorded([1000]))
     assert later._rerun.skipped == []
+
+
+def test_a_topic_may_have_no_messages_beyond_a_gap_or_none_at_all(comparison):
+    stretch = recorded([0, 5000])
+    stretch['/energy'] = {name: column[:1] for name, column in stretch['/energy'].items()}
+    del stretch['/omega']
+    comparison.take(stretch)
+    assert (comparison.ticks, comparison.messages, comparison.parting) == (2, 3, None)
+    assert set(comparison.largest) == {'orientation', 'position', 'energy'}
 
 
 def test_a_tick_that_comes_too_late_and_what_is_not_finite_are_refused(comparison):
@@ -156,3 +174,8 @@ def test_attitudes_are_apart_by_their_angle_whatever_the_signs(angle, sign):
     q = p * Rotation.from_rotvec(np.array([2.0, -1.0, 2.0]) / 3.0 * angle)
     found = compare._angle(p.as_quat()[np.newaxis], sign * q.as_quat()[np.newaxis])
     assert found == pytest.approx([angle], rel=1e-3 if angle < 1e-9 else 1e-9, abs=1e-15)
+
+
+def test_a_recorded_attitude_that_is_no_unit_quaternion_is_as_far_off_as_any_may_be():
+    assert compare._angle(np.array([[10.0, 0.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 0.0, 1.0]])) == (
+        pytest.approx([2.0 * np.pi]))

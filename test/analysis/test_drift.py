@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.analysis.drift import Residual, scales
+from rigid_body_sim.analysis.drift import FLOOR, Residual, scales
 from rigid_body_sim.analysis.history import History, Segment
 from rigid_body_sim.scene.scene import load_scene
 
@@ -57,6 +57,8 @@ def test_the_scale_holds_where_the_value_is_small():
     values[10:] = 1e-9
     assert residual(
         values, (segment(0),), lambda segment: True, scale=2.0).largest == pytest.approx(5e-10)
+    assert residual(
+        values, (segment(0),), lambda segment: True, scale=0.5).largest == pytest.approx(2e-9)
     # nothing to compare with
     assert residual(values, (segment(0),), lambda segment: True).largest == 0.0
 
@@ -65,6 +67,40 @@ def test_nothing_kept_nothing_said():
     summary = residual(np.arange(1000.0), (segment(0),), lambda segment: False).summary()
     assert (summary['largest_residual'] is None and summary['judged_ticks'] == 0
             and summary['last'] == 999.0)
+
+
+@pytest.mark.parametrize('block', [1, 4, 6])
+def test_of_a_vector_the_length_of_the_change_is_compared_with_its_length_before(block):
+    """Of (3, 4) it is 5, and the change of (0, 2) to (6, 10) is 10."""
+    values = np.array([[3.0, 4.0], [3.0, 4.0], [3.0, 5.0], [0.0, 2.0], [6.0, 10.0], [0.0, 2.0]])
+    found = Residual(History((), (segment(0), segment(3))), lambda segment: True, 1.0, 6, size=2)
+    for begin in range(0, 6, block):
+        part = slice(begin, begin + block)
+        found.add(STAMPS[:6][part], STAMPS[:6][part] * 1e-9, values[part])
+    assert found.summary() == {
+        'first': [3.0, 4.0], 'last': [0.0, 2.0], 'least': [0.0, 2.0], 'greatest': [6.0, 10.0],
+        'largest_residual': 5.0, 'last_residual': 0.0, 'judged_ticks': 6, 'stretches': 2,
+        'levels': [{'from': 0.0, 'until': 0.003, 'value': [3.0, 4.0], 'begun_by': ''},
+                   {'from': 0.003, 'until': None, 'value': [0.0, 2.0], 'begun_by': ''}]}
+    assert found.curve()[1].tolist() == [0.0, 0.0, 0.2, 0.0, 5.0, 0.0]
+
+
+def test_a_change_at_the_first_tick_leaves_no_reference_from_before():
+    found = residual(np.full(5, 4.0), (segment(0), segment(0)), lambda segment: True,
+                     block=5)
+    assert found.summary()['largest_residual'] == 0.0
+    assert [level['value'] for level in found.levels] == [4.0]
+
+
+def test_the_first_hundred_levels_are_told_and_all_stretches_counted():
+    found = residual(np.arange(202.0), tuple(segment(k, held=k % 2 == 1) for k in range(202)),
+                     lambda segment: not segment.held, block=101)
+    assert [level['value'] for level in found.levels] == list(range(0, 200, 2))
+    assert [level['until'] for level in found.levels] == [STAMPS[k] * 1e-9
+                                                          for k in range(1, 200, 2)]
+    assert found.stretches == 101
+    assert found.not_kept_from == STAMPS[1:202:2].tolist()
+    assert FLOOR == 2.0**-50
 
 
 def test_energies_are_compared_with_the_larger_of_kinetic_and_potential():

@@ -105,6 +105,7 @@ def test_strikes_come_again_after_a_reset_only():
         [0.0, 1.5, 4.0], [0.0, 1.5, 2.0, 4.0], ['', 'strike', 'commands', 'strike'])
     # a command at the instant of a strike: the strike belongs to what ends there
     assert strikes([commands(int(1.5 * S), PUSH)], 3 * S)[0] == [0.0]
+    assert strikes([commands(int(1.5 * S) + 1, PUSH)], 3 * S)[0] == [0.0, 1.5]
 
 
 def test_each_stamp_has_its_segment_and_earlier_ones_have_the_first():

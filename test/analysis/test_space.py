@@ -53,6 +53,30 @@ def test_the_polhode_lies_on_the_ellipsoids_of_energy_and_momentum():
     assert trace.path == pytest.approx(turned)
 
 
+def test_the_net_of_a_sphere_is_of_24_latitudes_and_48_longitudes():
+    [trace] = spaces(measured(scene(TENSOR, 'pivot')))
+    net = trace.surfaces['unit sphere']
+    assert net.shape == (25, 49, 3)
+    assert net[[6, 12, 12, 12], [0, 12, 24, 36]] == pytest.approx(np.array(
+        [[0.5**0.5, 0.0, 0.5**0.5], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]),
+        abs=1e-15)
+
+
+def test_the_ellipsoids_are_those_of_the_first_tick_also_of_a_body_that_slows_down():
+    body = measured(scene([1e-9, 1e-9, 1.5e-9]))
+    body.motion.samples.columns()[2][:] = np.linspace(2.0, 1.0, 40)[:, np.newaxis] * [1, 0, 0]
+    energy, momentum = spaces(body)[0].surfaces.values()
+    assert np.abs(energy).max(axis=(0, 1)) == pytest.approx(
+        [2.0, 2.0, 2.0 * (2.0 / 3.0)**0.5])
+    assert np.abs(momentum).max(axis=(0, 1)) == pytest.approx([2.0, 2.0, 4.0 / 3.0])
+
+
+@pytest.mark.parametrize(('moment', 'nets'), [(1.5e-6, 2), (1e-6, 0), (0.7e-6, 0), (1e-7, 0)])
+def test_ellipsoids_that_would_be_too_long_to_see_are_left_out(moment, nets):
+    polhode, _ = spaces(measured(scene([1.0, 1.0, moment], omega=(1, 0, 0))))
+    assert len(polhode.surfaces) == nets
+
+
 def test_a_body_at_rest_and_a_rod_have_no_ellipsoids_and_a_held_one_no_polhode():
     assert spaces(measured(scene(TENSOR, omega=(0, 0, 0))))[0].surfaces == {}
     assert spaces(measured(scene([1.0, 1.0, 0.0], omega=(1, 0, 0))))[0].surfaces == {}

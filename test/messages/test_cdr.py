@@ -46,6 +46,9 @@ SAMPLES = {
     'tf2_msgs/msg/TFMessage': {'transforms': [{'header': HEADER, 'child_frame_id': 'body'}, {}]}}
 
 
+IMU = 'sensor_msgs/msg/Imu'
+
+
 def plain(message):
     """Turn a rosbags message into nested dicts and lists."""
     if hasattr(message, '__msgtype__'):
@@ -100,6 +103,25 @@ def test_padding_is_zero_and_bytes_repeat():
     assert data[19:24] == bytes(5)
 
 
+def test_what_is_left_out_is_zero_and_empty():
+    assert decode(schema(IMU), IMU, encode(IMU, {})) == {
+        'header': {'stamp': {'sec': 0, 'nanosec': 0}, 'frame_id': ''},
+        'orientation': {'x': 0.0, 'y': 0.0, 'z': 0.0, 'w': 0.0},
+        'orientation_covariance': [0.0] * 9,
+        **{name: value for field in ('angular_velocity', 'linear_acceleration')
+           for name, value in ((field, {'x': 0.0, 'y': 0.0, 'z': 0.0}),
+                               (f'{field}_covariance', [0.0] * 9))}}
+
+
+def test_a_text_may_be_without_its_final_zero_where_its_length_is_zero():
+    leaves = []
+    assert decode(parse('a/msg/B', 'string s\nstring t\nbool b'), 'a/msg/B',
+                  b'\0\1\0\0' + bytes(4) + b'\3\0\0\0hi\0\1', leaves) == {
+        's': '', 't': 'hi', 'b': True}
+    assert leaves == [('s', '#', 4, 1), ('s', 's', 8, 0), ('t', '#', 8, 1), ('t', 's', 12, 2),
+                      ('b', '?', 15, 1)]
+
+
 @pytest.mark.parametrize(('values', 'problem'), [
     ({'datum': 1.0}, "no field 'datum'; one of data"),
     ({'data': 'one'}, 'does not fit'),
@@ -134,3 +156,10 @@ def test_claimed_lengths_cost_nothing():
         decode(schema('std_msgs/msg/String'), 'std_msgs/msg/String', b'\0\1\0\0\xff\xff\xff\xff')
     with pytest.raises(BadInput, match='claims 4294967295 elements'):
         decode(parse('a/msg/B', 'float64[] x'), 'a/msg/B', b'\0\1\0\0\xff\xff\xff\xff')
+
+
+def test_a_length_beyond_the_end_is_not_a_shorter_value():
+    with pytest.raises(BadInput, match='data claims 3 bytes'):
+        decode(schema('std_msgs/msg/String'), 'std_msgs/msg/String', b'\0\1\0\0\3\0\0\0ab')
+    with pytest.raises(BadInput, match='x claims 3 elements'):
+        decode(parse('a/msg/B', 'uint8[] x'), 'a/msg/B', b'\0\1\0\0\3\0\0\0ab')

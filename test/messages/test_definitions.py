@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Definitions of the installed ROS 2, kept ones and rosbags agree; foreign texts do no harm."""
 
+import json
 import sys
 
 import pytest
@@ -78,6 +79,41 @@ def test_texts_are_understood_by_rosbags_and_name_the_same_fields(type_name):
         assert [field.name for field in fields] == [field[0] for field in theirs[name][1]]
 
 
+def test_of_an_installed_package_the_files_in_its_share_folder_are_read(
+        tmp_path, monkeypatch, fresh):
+    """Files in the folders above and below it, or a text without its hashes, are not."""
+    prefix = tmp_path / 'prefix'
+    modules = prefix / 'lib/python3.12/site-packages'
+    (modules / 'toys_of_a_test').mkdir(parents=True)
+    (modules / 'toys_of_a_test/__init__.py').touch()
+    monkeypatch.syspath_prepend(modules)
+
+    def put(folder, name, text, suffixes=('msg', 'json')):
+        of_package = folder / 'share/toys_of_a_test/msg'
+        of_package.mkdir(parents=True, exist_ok=True)
+        hashes = {'type_hashes': [{'type_name': f'toys_of_a_test/msg/{name}',
+                                   'hash_string': f'RIHS01_{name}'}]}
+        for suffix in suffixes:
+            (of_package / f'{name}.{suffix}').write_text(
+                text if suffix == 'msg' else json.dumps(hashes))
+
+    put(prefix, 'Top', 'Wheel[2] wheels\nBall ball\nstring name\n')
+    put(prefix, 'Ball', 'float64 radius\n')
+    put(prefix, 'Wheel', 'toys_of_a_test/Ball hub\n')
+    put(prefix, 'Unhashed', 'bool b\n', ['msg'])
+    put(tmp_path, 'Above', 'bool b\n')
+    put(prefix / 'lib', 'Below', 'bool b\n')
+    line = '=' * 80
+    assert definition('toys_of_a_test/msg/Top') == (
+        'toys_of_a_test/msg/Top',
+        'Wheel[2] wheels\nBall ball\nstring name\n'
+        f'\n{line}\nMSG: toys_of_a_test/Ball\nfloat64 radius\n'
+        f'\n{line}\nMSG: toys_of_a_test/Wheel\ntoys_of_a_test/Ball hub\n', 'RIHS01_Top')
+    for name in ('Unhashed', 'Above', 'Below'):
+        with pytest.raises(BadInput, match='is a message type that is not installed here'):
+            definition(f'toys_of_a_test/msg/{name}')
+
+
 @pytest.mark.parametrize('type_name', ['std_msgs/msg/Floaty', 'x', 'os/msg/C', '../msg/X',
                                        'a b/msg/C', 'sys/msg/path', ''])
 def test_unknown_types_are_refused(type_name):
@@ -112,10 +148,25 @@ def test_empty_message_has_the_byte_that_ros_puts_there():
     ('float64', "the line 'float64'"),
     ('Missing m', 'pkg/msg/Missing is missing'),
     ('T t', 'contains itself'),
-    ('float64[9999999999] x', 'an array of 9999999999 elements'),
+    ('float64[1000001] x', 'an array of 1000001 elements; at most 1000000'),
     ('float64 x\n' + '=' * 80 + '\nfloat64 y', 'after a separator'),
     ('wstring w', 'pkg/msg/wstring is missing'),
 ])
 def test_texts_that_make_no_sense_are_refused(text, problem):
     with pytest.raises(BadInput, match=problem.replace('(', r'\(')):
         parse('pkg/msg/T', text)
+
+
+def chain(count):
+    """Return the text of a message in a message, `count` of them."""
+    line = '=' * 80
+    return 'T1 t\n' + ''.join(
+        f'{line}\nMSG:pkg/T{k}\n' + (f'T{k + 1} t\n' if k + 1 < count else 'bool b\n')
+        for k in range(1, count))
+
+
+def test_the_longest_array_and_the_deepest_nesting():
+    assert parse('pkg/msg/T', 'int8[1000000] x') == {'pkg/msg/T': [Field('x', 'int8', 1_000_000)]}
+    assert len(parse('pkg/msg/T', chain(33))) == 33
+    with pytest.raises(BadInput, match='T33 contains itself or is nested too deeply'):
+        parse('pkg/msg/T', chain(34))

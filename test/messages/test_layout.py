@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of numbers from many messages at once."""
 
+import struct
+
 import numpy as np
 import pytest
 from packing import Packed
@@ -52,6 +54,46 @@ def test_messages_of_another_form_do_not_fit():
     changed = rows[:1] ^ np.eye(len(one), dtype=np.uint8)
     # two bytes tell the encoding, and four, behind the time, the length of the string
     assert np.flatnonzero(~layout.fits(changed)).tolist() == [0, 1, 12, 13, 14, 15]
+
+
+def test_a_damaged_length_or_byte_order_does_not_fit_but_options_do():
+    """Of the encapsulation the first two bytes tell the encoding, the others are options."""
+    message = encode('std_msgs/msg/String', {'data': 'world'})
+    rows = np.array([list(message)] * 9, np.uint8)
+    rows[np.arange(8), np.arange(8)] += 1
+    assert Layout(schema('std_msgs/msg/String'), 'std_msgs/msg/String', message).fits(
+        rows).tolist() == [False, False, True, True, False, False, False, False, True]
+
+
+def test_columns_of_every_kind_of_field():
+    """Structs of one double, of two and of mixed types; arrays; what is empty has no column."""
+    line = '=' * 80
+    schemas = parse('a/msg/All', f"""
+One one
+Two two
+Mixed mixed
+Time when
+int32[2] array
+string empty
+string text
+float64[] none
+float32[] single
+{line}\nMSG: a/One\nfloat64 x
+{line}\nMSG: a/Two\nfloat64 x\nfloat64 y
+{line}\nMSG: a/Mixed\nfloat64 x\nint32 n
+{line}\nMSG: a/Time\nint32 sec\nuint32 nanosec
+""")
+    # nanoseconds beyond the half of their range occur in damaged recordings
+    message = b'\0\1\0\0' + struct.pack('<d2ddiiI2iIs3xI4sIIf', 1.5, 2.5, 3.5, 4.5, 5, 6,
+                                        4_000_000_000, 7, 8, 1, b'', 4, b'abc', 0, 1, 9.5)
+    layout = Layout(schemas, 'a/msg/All', message)
+    rows = np.frombuffer(message, np.uint8)[np.newaxis]
+    assert {name: column.tolist() for name, column in layout.unpack(rows).items()} == {
+        'one.x': [1.5], 'two': [[2.5, 3.5]], 'mixed.x': [4.5], 'mixed.n': [5],
+        'when': [10_000_000_000], 'array': [[7, 8]], 'text': [b'abc'], 'single': [[9.5]]}
+    assert layout.columns == ['one.x', 'two', 'mixed.x', 'mixed.n', 'when', 'array', 'text',
+                              'single']
+    assert layout.components == {'two': ['x', 'y']}
 
 
 def test_a_struct_that_only_resembles_a_time_keeps_its_numbers():

@@ -59,6 +59,17 @@ def test_a_solid_is_the_primitive_of_its_full_extents(shape, kind, size):
     assert fields['color'] == {'r': 0.2, 'g': 0.5, 'b': 0.9, 'a': 1.0}
 
 
+def shades(fields):
+    return sorted({tuple(colour[key] for key in 'rgba') for colour in fields['colors']})
+
+
+def test_a_surface_around_another_solid_is_translucent():
+    fields = shape_fields(scene('shape: {box: {size: [0.1, 0.2, 0.3]}}, '
+                                'surface: {sphere: {radius: 0.5}}'))
+    assert shades(fields) == [(0.2, 0.5, 0.9, 0.35), (0.2, 0.5, 0.9, 1.0),
+                              (0.95, 0.9, 0.8, 0.35), (0.95, 0.9, 0.8, 1.0)]
+
+
 def test_what_is_no_single_solid_is_triangles_of_two_colours():
     one = scene('shape: {torus: {radius: 1.0, tube: 0.2}}')
     assert solid_of(one) is None
@@ -67,5 +78,5 @@ def test_what_is_no_single_solid_is_triangles_of_two_colours():
     assert fields['scale'] == {'x': 1.0, 'y': 1.0, 'z': 1.0}
     assert len(fields['points']) == len(fields['colors']) > 0
     assert len(fields['points']) % 3 == 0
-    assert len({tuple(colour.items()) for colour in fields['colors']}) == 2
+    assert shades(fields) == [(0.2, 0.5, 0.9, 1.0), (0.95, 0.9, 0.8, 1.0)]
     assert place_of(one) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))

@@ -117,6 +117,12 @@ def test_imu_measures_what_holds_the_body_up():
     assert imu.header.frame_id == 'racket'
 
 
+def test_imu_of_a_held_body_measures_a_skew_field_reversed():
+    scene = load_scene('heavy_top', ['effects=[gravity: {g: [1.0, 2.0, -9.0]}]'])
+    [imu] = messages(scene, 'imu', moments=[State.of(0.0)])
+    np.testing.assert_allclose(values(imu.linear_acceleration), [-1.0, -2.0, 9.0], atol=1e-14)
+
+
 def test_imu_in_free_fall_measures_nothing_and_on_the_table_the_weight():
     thrown = load_scene('free_body', ['effects=[gravity: {g: 9.81}]'])
     [imu] = messages(thrown, 'imu', moments=[State.of(0.5, velocity=(1.0, 0.0, -4.9))])
@@ -155,6 +161,22 @@ def test_joint_state_counts_the_angle_as_the_scene_does(angle):
     assert joint.velocity[0] == pytest.approx(0.7, abs=1e-15)
 
 
+def test_joint_state_of_a_skew_hinge_that_starts_from_zero():
+    """A turn by 0.3 rad about the axis, of a body that stood at 0."""
+    scene = load_scene('kater_pendulum', [
+        'constraint.hinge={axis: [2, 3, 6], through: [0, 0, 0]}', 'initial={rate: 1.0}'])
+    axis = np.array([2.0, 3.0, 6.0]) / 7.0
+    turned = State.of(0.0, multiply(*scene.initial.orientation, *from_rotation_vector(
+        *(0.3 * axis))), 0.7 * axis)
+    [joint] = messages(scene, 'joint_states', moments=[turned])
+    assert joint.position[0] == pytest.approx(0.3, abs=1e-15)
+    later = load_scene('kater_pendulum', [
+        'constraint.hinge={axis: [2, 3, 6], through: [0, 0, 0]}', 'initial={angle: 0.8}'])
+    [joint] = messages(later, 'joint_states', moments=[State.of(0.0, from_rotation_vector(
+        *(1.1 * axis)), 0.7 * axis)])
+    assert joint.position[0] == pytest.approx(1.1, abs=1e-15)
+
+
 def test_joint_states_of_a_free_body_are_refused():
     with pytest.raises(BadInput, match='only a hinge is a joint'):
         messages('free_body', 'joint_states')
@@ -168,6 +190,16 @@ def test_marker_of_a_body_without_a_shape_is_a_box_with_its_moments():
             == near(body.about_center.moments, rel=1e-12))
     assert values(marker.pose.orientation) == STATE.orientation.tolist()
     assert (marker.type, marker.action, marker.color.a) == (1, 0, 1.0)
+
+
+def test_marker_of_a_body_without_a_shape_stands_at_its_centre_of_mass():
+    """The body is turned by 90 degrees about z, so x becomes y and y becomes -x."""
+    scene = load_scene('free_body', ['body={mass: 1.0, inertia: [2.0, 3.0, 4.0], '
+                                     'center_of_mass: [1.0, 2.0, 3.0]}'])
+    turned = State.of(0.0, from_rotation_vector(0.0, 0.0, math.pi / 2),
+                      position=(10.0, 20.0, 30.0))
+    [marker] = messages(scene, 'marker', moments=[turned])
+    np.testing.assert_allclose(values(marker.pose.position), [8.0, 21.0, 33.0], rtol=1e-15)
 
 
 PARTS = ['constraint=free', 'effects=[]',
@@ -209,6 +241,13 @@ def test_paced_outputs_are_apart_from_those_of_every_tick():
     assert [output.name for output in outputs.ticking][-1] == 'odom'
     assert state_topics.scene_messages(
         state_topics.chosen([]), load_scene('free_body'), FRAMES).paced is None
+
+
+def test_names_outside_the_namespace_and_topics_with_a_rate_of_their_own():
+    outputs = state_topics.OUTPUTS.values()
+    assert [output.name for output in outputs if output.absolute] == ['tf', 'clock']
+    assert [output.name for output in outputs if output.paced] == ['marker', 'tf']
+    assert state_topics.DISPLAY_RATE == 30.0
 
 
 def test_clock_is_the_stamp():

@@ -24,6 +24,19 @@ def test_a_new_rate_goes_on_from_its_tick_without_a_jump():
     assert fast.instant(1508) == EPOCH + 1_501_000_000
 
 
+@pytest.mark.parametrize('rate', [1000.0, 59.94, 1.0 / 3.0])
+def test_many_instants_are_those_of_their_ticks(rate):
+    timeline = Timeline(EPOCH, rate, tick=40)
+    assert timeline.instants(37, 5) == [timeline.instant(tick) for tick in range(37, 42)]
+    assert timeline.instant(40) == EPOCH < timeline.instant(41)
+
+
+def test_a_span_is_a_whole_number_of_ticks_up_to_two_ulps():
+    """The ulp of 4 s is 2^-50 s."""
+    assert Timeline(0, 1.0).ticks_in(4.0 + 2.0**-49) == 4
+    assert Timeline(0, 1.0).ticks_in(4.0 + 2.0**-49 + 2.0**-50) == 5
+
+
 def test_ticks_in_a_span_never_fall_short():
     assert Timeline(0, 1000.0).ticks_in(0.5) == 500
     assert Timeline(0, 3.0).ticks_in(0.5) == 2

@@ -33,7 +33,15 @@ def test_what_is_early_counts_as_punctual_and_what_is_very_late_in_the_last_bin(
     found = of(-5000, 3_000_000_000, 4_000_000_000).summary()
     assert found['count'] == 3
     assert found['max'] == 4.0
-    assert found['p50'] == pytest.approx(BINS * 1e-6)
+    assert found['p50'] == pytest.approx(BINS * 1e-6) == 0.02
+    assert of(-5000, -1, 2500).summary() == seconds(3, 1e-6, 2.5e-6, 2.5e-6)
+
+
+def test_ticks_that_are_never_late_have_no_greatest_lateness():
+    found = of(-5000)
+    assert found.worst == found.summary()['max'] == found.since_last()['max'] == 0
+    found.add(-1)
+    assert found.worst == found.summary()['max'] == found.since_last()['max'] == 0
 
 
 def test_what_is_new_since_the_last_look_is_told_once_and_the_whole_run_stays():

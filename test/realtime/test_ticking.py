@@ -9,10 +9,11 @@ import itertools
 import pytest
 
 from rigid_body_sim.realtime.lateness import Lateness
-from rigid_body_sim.realtime.ticking import BACKLOG, CLOCK_JUMP, LONGEST_SLEEP, Ticker
+from rigid_body_sim.realtime.ticking import BACKLOG, CLOCK_JUMP, LONGEST_SLEEP, Steady, Ticker
 
 MILLISECOND = 1_000_000
 START = 5_000_000_000
+TAKE_PRIORITY = Ticker._take_priority
 
 
 @pytest.fixture(autouse=True)
@@ -57,12 +58,13 @@ class Work:
 
     def __init__(self, clock, ticks, costs=None, between=lambda work: None):
         self._clock, self._ticks, self._costs, self._between = clock, ticks, costs or {}, between
-        self.next_tick = 0
+        self.next_tick = self.begun = 0
         self.runs = []
         self.finished = False
 
     def begin(self):
         assert not self.runs
+        self.begun += 1
 
     def run_tick(self, publish):
         self.runs.append((self.next_tick, self._clock.now(), publish))
@@ -88,6 +90,7 @@ def run(work, clock, rate=1000.0, factor=1.0, skip_publish=False):
     if ticker.failure and not isinstance(ticker.failure, StopIteration):
         raise ticker.failure
     assert [tick for tick, _, _ in work.runs] == list(range(len(work.runs)))
+    assert work.begun == 1
     return ticker
 
 
@@ -147,6 +150,7 @@ def test_factor_zero_does_not_wait():
     work = Work(clock, 1000)
     run(work, clock, factor=0.0)
     assert work.times == [0] * 1000
+    assert all(publish for _, _, publish in work.runs)
 
 
 def test_change_of_pace_holds_from_its_tick_on():
@@ -165,6 +169,28 @@ def test_long_waits_look_after_commands():
     work = Work(clock, 2, between=lambda work: looks.append(clock.time))
     run(work, clock, rate=1.0)
     assert 95 <= len(looks) <= 101
+
+
+@pytest.mark.parametrize(('rate', 'looks'), [(1000.0, 0), (100.0, 0), (50.0, 2)])
+def test_commands_are_looked_after_while_a_wait_is_longer_than_10_ms(rate, looks):
+    clock, found = Clock(), []
+    run(Work(clock, 3, between=found.append), clock, rate=rate)
+    assert len(found) == looks
+
+
+def test_a_pause_while_it_waits_holds_the_tick_back(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep',
+                        lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
+
+    def between(work):
+        ticker.pause()
+        if clock.time - START > 1500 * MILLISECOND:
+            ticker.stop()
+    work = Work(clock, 3, between=between)
+    ticker = Ticker(work, clock, 1.0, 1.0, False, lambda: None)
+    ticker.run()
+    assert work.times == [0]
 
 
 def test_pause_and_steps_leave_out_no_tick_and_no_time(monkeypatch):
@@ -187,9 +213,83 @@ def test_pause_and_steps_leave_out_no_tick_and_no_time(monkeypatch):
     assert 300 * MILLISECOND < work.times[10] < 320 * MILLISECOND
     assert 500 * MILLISECOND < work.times[11] < 520 * MILLISECOND
     assert steps[0].result() == 10
+    assert all(publish for _, _, publish in work.runs)
     assert (ticker.overruns, ticker.slipped) == (0, 0)
     # 20 ticks at 1 kHz, the pause left out
     assert ticker.latest == (20, 19 * MILLISECOND)
+
+
+@pytest.mark.parametrize(('factor', 'running'), [(1.0, 4 * MILLISECOND), (0.0, 0)])
+def test_a_pause_before_the_first_tick_and_one_between_ticks_are_left_out(
+        monkeypatch, factor, running):
+    clock = Clock()
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep',
+                        lambda seconds: setattr(clock, 'time', clock.time + int(seconds * 1e9)))
+    work = Work(clock, 5, between=lambda work: ticker.resume())
+    ticker = Ticker(work, clock, 1000.0, factor, False, lambda: None)
+    work._costs[2] = ticker.pause
+    ticker.pause()
+    ticker.run()
+    assert ticker.latest == (5, running)
+
+
+def test_stopped_it_ends_after_its_tick_and_calls_nobody():
+    clock, ended = Clock(), []
+    work = Work(clock, 10)
+    ticker = Ticker(work, clock, 1000.0, 1.0, False, lambda: ended.append(True))
+    assert (ticker.latest, ticker.waiting_for_clock, ticker.daemon) == ((0, 0), True, True)
+    work._costs[3] = ticker.stop
+    ticker.run()
+    assert (len(work.runs), ended, ticker.failure) == (4, [], None)
+
+
+@pytest.mark.parametrize(('factor', 'sleeps'), [(1.0, True), (0.5, True), (0.0, False)])
+def test_real_time_scheduling_is_asked_for_where_the_thread_sleeps(monkeypatch, factor, sleeps):
+    monkeypatch.setattr(Ticker, '_take_priority', TAKE_PRIORITY)
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.ask_for_priority',
+                        lambda wanted: f'real time: {wanted}')
+    clock = Clock()
+    assert run(Work(clock, 2), clock, factor=factor).scheduling == f'real time: {sleeps}'
+
+
+def test_the_clock_of_the_machine_sleeps_as_long_as_wanted_but_not_longer_than_commands_wait(
+        monkeypatch):
+    slept = []
+    monkeypatch.setattr('rigid_body_sim.realtime.ticking.time.sleep', slept.append)
+    for nanoseconds in (2 * MILLISECOND, 1000 * MILLISECOND):
+        Steady.wait(nanoseconds)
+    assert slept == [pytest.approx(0.002), 0.01]
+    assert not Steady.follows_clock_topic
+
+
+@pytest.mark.parametrize(('rate', 'factor', 'cost', 'overruns'), [
+    # of tick 0; the next one is due after a period
+    (1000.0, 1.0, 2 * MILLISECOND, 0), (1000.0, 1.0, 2 * MILLISECOND + 1, 1),
+    (100.0, 0.5, 40 * MILLISECOND, 0), (100.0, 0.5, 40 * MILLISECOND + 1, 1),
+    # a period of 333333.3 ns
+    (3000.0, 1.0, 333_333 + 333_334, 0), (3000.0, 1.0, 333_333 + 333_335, 1)])
+def test_a_tick_that_comes_more_than_a_period_late_is_an_overrun(rate, factor, cost, overruns):
+    clock = Clock()
+    assert run(Work(clock, 2, {0: cost}), clock, rate, factor).overruns == overruns
+
+
+@pytest.mark.parametrize(('cost', 'slipped'), [
+    (103 * MILLISECOND, 0), (103 * MILLISECOND + 1, 102 * MILLISECOND + 1)])
+def test_the_schedule_slips_by_more_than_two_periods_and_a_tenth_of_a_second(cost, slipped):
+    clock = Clock()
+    work = Work(clock, 2, {0: cost})
+    assert run(work, clock, skip_publish=True).slipped == slipped
+    # a tick that is only late is left out
+    assert [publish for _, _, publish in work.runs] == [True, slipped > 0]
+
+
+@pytest.mark.parametrize(('step', 'jumps'), [
+    # the tick after the first is due after 10 ms
+    (10_030 * MILLISECOND, 0), (10_030 * MILLISECOND + 1, 1),
+    (-10 * MILLISECOND, 0), (-10 * MILLISECOND - 1, 1)])
+def test_clock_topic_jumps_by_two_periods_backward_and_ten_seconds_more_forward(step, jumps):
+    clock = ClockTopic([10**10, 10**10 + step])
+    assert run(Work(clock, None), clock, rate=100.0).clock_jumps == jumps
 
 
 def test_failure_ends_the_thread_and_is_kept():

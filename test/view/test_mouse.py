@@ -52,6 +52,15 @@ def test_the_nearer_of_two_surfaces_is_met():
         assert found == pytest.approx([4.5, 0.2, 0.1])
 
 
+@pytest.mark.parametrize(('start', 'met'), [(4.0, 4.5), (4.9, 5.5), (5.5, None)])
+def test_a_ray_may_begin_close_to_a_body_inside_it_or_where_it_ends(start, met):
+    still = np.zeros(14)
+    still[4] = 1.0
+    one = surfaces.box((1.0, 1.0, 1.0)).placed((5.0, 0.0, 0.0))
+    found = hit(Drawing([one], ''), still, np.array([start, 0.2, 0.1]), np.array([1.0, 0, 0]))
+    assert found is None if met is None else found == pytest.approx([met, 0.2, 0.1])
+
+
 def drag(mouse, phase, cursor=(0, 0, 0), client=0):
     """Report an event of a drag, as viser does."""
     asyncio.run(mouse._drag(types.SimpleNamespace(

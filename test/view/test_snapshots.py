@@ -17,6 +17,7 @@ from rigid_body_sim.view.snapshots import (
     TURN_BETWEEN,
     Mechanics,
     Snapshot,
+    state_between,
     trail_between,
 )
 
@@ -96,6 +97,63 @@ class Gui:
     def add_uplot(self, data, *series, **settings):
         self.chart = types.SimpleNamespace(data=data, scales=settings['scales'])
         return self.chart
+
+
+def moved(times, speeds):
+    """Return states of a body whose centre of mass, at (1, 0, 0) in it, is at (0, t^2, 0).
+
+    It turns about z, whatever `speeds` (rad/s) say.
+    """
+    states = np.zeros((3, 14))
+    states[:, 0], states[:, 7] = times, speeds
+    turns = Rotation.from_rotvec(np.outer(np.array(times) + 0.3, [0.0, 0.0, 1.0]))
+    states[:, 1:5] = turns.as_quat()
+    states[:, 8:11] = np.outer(np.square(times), [0.0, 1.0, 0.0]) - turns.apply([1.0, 0.0, 0.0])
+    return states
+
+
+ACCELERATED = parse_scene('scene: s\nbody: {mass: 3.0, inertia: [1.0, 1.5, 2.0], '
+                          'center_of_mass: [1.0, 0.0, 0.0]}\nconstraint: free\neffects: []\n'
+                          'initial: {}\n')
+
+
+def test_force_and_torque_are_told_by_the_differences_of_three_states():
+    """The force is 2 m; the angular velocity rises by 10 rad/s^2, so the torque is 10 C."""
+    force, torque = Mechanics(ACCELERATED).net_between(
+        moved([0.99, 1.0, 1.01], [4.9, 5.0, 5.1]))
+    assert force == pytest.approx([0.0, 6.0, 0.0], abs=1e-9)
+    assert torque == pytest.approx([0.0, 0.0, 20.0], abs=1e-9)
+
+
+@pytest.mark.parametrize(('times', 'speed', 'known'), [
+    ([0.9, 1.0, 1.1], 1.9, True), ([0.9, 1.0, 1.1], 2.1, False),
+    ([0.9, 1.0, 1.10008], 1.9, True), ([0.9, 1.0, 1.10012], 1.9, False),
+    ([1.0, 1.0, 1.1], 1.9, False), ([1.0, 1.0, 1.0], 0.0, False)])
+def test_states_that_are_uneven_in_time_or_far_apart_tell_neither(times, speed, known):
+    """A turn of 0.2 rad from one to the next, and a thousandth of the step, are the limits."""
+    found = Mechanics(ACCELERATED).net_between(moved(times, [9.0, speed, 9.0]))
+    assert [part.shape for part in found] == [(3,), (3,)]
+    assert [bool(np.isfinite(part).all()) for part in found] == [known] * 2
+
+
+def test_of_a_hinged_body_the_torque_about_its_axis_is_told():
+    """Its momentum about the hinge turns with it; its component along the axis is 2 rad/s^2 C."""
+    scene = load_scene('kater_pendulum', ['body.inertia=[[0.48, 0.0, 0.0], [0.0, 0.48, 0.1], '
+                                          '[0.0, 0.1, 0.4]]'])
+    states = np.zeros((3, 14))
+    states[:, 0], states[:, 4], states[:, 6] = [0.9, 1.0, 1.1], 1.0, [0.8, 1.0, 1.2]
+    _, torque = Mechanics(scene).net_between(states)
+    assert torque == pytest.approx([0.0, 2.0 * (0.48 + 2.0 * 0.4**2), 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(('elapsed', 'share'), [
+    (0.4, 0.25), (0.5, 0.0), (0.6, 0.0), (0.0, 0.0), (-0.1, 0.0)])
+def test_a_state_between_two_is_told_unless_they_are_half_a_second_apart_or_back_in_time(
+        elapsed, share):
+    before, after = np.zeros((2, 14))
+    before[0], before[4], before[8] = 1.0, 1.0, 5.0
+    after[0], after[4], after[8] = 1.0 + elapsed, 1.0, 9.0
+    assert state_between(before, after, 0.25)[8] == 5.0 + share * 4.0
 
 
 def snapshot(time, energy=0.0, momentum=0.0, restarted=False):
