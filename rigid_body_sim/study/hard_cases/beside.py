@@ -121,11 +121,12 @@ def angle(found, expected):
     """Return the angle (rad) between an attitude and one given by its digits."""
     with mp.workdps(50):
         p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
-        size = mp.sqrt(mp.fdot(p, p) * mp.fdot(q, q))
+        if not mp.fdot(p, p) * mp.fdot(q, q) > 0:    # a NaN too
+            return math.inf
         sign = 1 if mp.fdot(p, q) > 0 else -1
         across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2
                              for a, b in zip(p, q)))
-        return float(4 * mp.asin(min(mpf(1), across / 2))) if size > 0 else math.inf
+        return float(4 * mp.asin(min(mpf(1), across / 2)))
 
 
 def _brief(failure):
