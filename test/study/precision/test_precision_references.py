@@ -4,6 +4,7 @@
 The references in test/data are made by Gragg's extrapolation.
 """
 
+import dataclasses
 import json
 import pathlib
 
@@ -178,9 +179,121 @@ def test_a_reference_computed_now_is_the_cached_one():
         assert max(map(apart, cached.omega, now.omega)) < 1e-31
 
 
+class Drifting:
+    """A motion whose omega is wrong by a part that falls with the bits; the attitude is at rest."""
+
+    wrong = {reference.BITS: mpf(0)}
+
+    def __init__(self, given, bits):
+        self.omega = given.omega[0] * (1 + self.wrong[bits])
+
+    def go(self, time):
+        return (mpf(0), mpf(0), mpf(0), mpf(1)), (mpf(0), self.omega * time, mpf(0))
+
+
+def spun(rate, monkeypatch, check, floor, draws=3):
+    """Return the Reference of a body by the made-up motion."""
+    monkeypatch.setattr(reference, 'Turning', Drifting)
+    monkeypatch.setattr(Drifting, 'wrong', {
+        reference.BITS: mpf(0), reference.CHECK_BITS: check, reference.FLOOR_BITS: floor})
+    scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        f'effects: []\ninitial: {{angular_velocity: [{rate!r}, 0, 0]}}\n')
+    return reference.compute(scene, 4.0, draws)
+
+
+def test_digits_are_those_in_which_two_computations_agree_at_every_time(monkeypatch):
+    """omega rises to 12 rad/s at 4 s: its difference is relative there, absolute below 1 rad/s."""
+    found = spun(3.0, monkeypatch, mpf(2) ** -100, mpf(0))
+    assert found.times.tolist() == [k / 8 for k in range(1, 33)]
+    assert found.digits == pytest.approx(100.0 * np.log10(2.0), abs=1e-12)
+    found = spun(0.125, monkeypatch, mpf(2) ** -100, mpf(0))    # 0.5 rad/s at the end
+    assert found.digits == pytest.approx(101.0 * np.log10(2.0), abs=1e-12)
+
+
+def test_digits_end_where_the_computations_are_the_same(monkeypatch):
+    assert spun(3.0, monkeypatch, mpf(0), mpf(0)).digits == pytest.approx(60.0, abs=1e-12)
+
+
+def test_the_floor_is_the_largest_effect_of_half_an_ulp(monkeypatch):
+    """That of 3 is 2^-52; the two signs are drawn, and one of them adds to what is wrong anyway."""
+    found = spun(3.0, monkeypatch, mpf(0), mpf(2) ** -52, draws=8)
+    rate = 2.0**-52 * (1.0 + 3.0)
+    assert found.floor_omega == pytest.approx(rate * found.times, rel=1e-12, abs=0.0)
+    assert (found.floor == 0.0).all()
+
+
+def test_a_reference_is_saved_to_34_digits(tmp_path, monkeypatch):
+    monkeypatch.setattr(reference, 'FOLDER', tmp_path)
+    problem = suite.problem('racket')
+    with mp.workprec(reference.BITS):
+        third = mpf(1) / 3
+        made = reference.Reference(
+            np.array([1.0, problem.duration]), [(third,) * 4] * 2, [(third, mpf(0), -third)] * 2,
+            np.array([1.23456e-15, 0.0]), np.array([2.0, 9.87654e-9]), 31.4159)
+        reference.save('racket', problem, made)
+        found = reference.load(problem)
+        assert abs(found.orientation[1][3] - third) < 1e-34
+        assert abs(found.omega[0][2] + third) < 1e-34
+    assert found.times.tolist() == [1.0, problem.duration]
+    assert (found.floor.tolist(), found.floor_omega.tolist()) == (
+        [1.235e-15, 0.0], [2.0, 9.877e-9])
+    assert found.digits == 31.4
+    longer = dataclasses.replace(problem, duration=101.0)
+    assert reference.load(longer) is None
+    assert reference.load(dataclasses.replace(problem, scene=suite.problem(
+        'driven_body').scene)) is None
+    assert reference.load(dataclasses.replace(problem, name='nowhere')) is None
+
+
+def of(constraint, effects, initial='{angular_velocity: [1, 0, 0]}', center='[0.25, 0, 0.5]'):
+    """Return the numbers that the references get for a scene."""
+    return inputs.of(parse_scene(
+        'scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5], '
+        f'center_of_mass: {center}}}\nconstraint: {constraint}\neffects: [{effects}]\n'
+        f'initial: {initial}\n'), inputs.exactly)
+
+
+def test_what_a_scene_lacks_is_zero():
+    made = of('free', '')
+    assert (made.g, made.linear, made.angular, made.inner, made.mu, made.radius, made.stiffness,
+            made.slack, made.quadratic, made.angular_quadratic) == (0,) * 10
+    assert (made.arm, made.axis, made.couples, made.strikes, made.ties) == (
+        (0, 0, 0), None, (), (), ())
+
+
+def test_arms_and_levers_are_from_the_point_of_reference_and_from_the_centre_of_mass():
+    made = of('{hinge: {axis: [0, 0, 2], through: [1, 0, 0.25]}}',
+              'strike: {impulse: [0, 1, 0], point: [2, 0.5, 1], time: 2}, '
+              'strike: {impulse: [0, 2, 0], point: [1, 0, 0], time: 1}', '{}')
+    assert (made.arm, made.axis) == ((-0.75, 0, 0.25), (0, 0, 1))
+    assert [(time, impulse, lever) for time, impulse, lever, *_ in made.strikes] == [
+        (1.0, (0, 2, 0), (0.75, 0, -0.5)), (2.0, (0, 1, 0), (1.75, 0.5, 0.5))]
+
+
+def test_springs_are_read_as_they_are_written():
+    made = of('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 2, 3], stiffness: 4}')
+    assert made.ties == (((0, 0, 1), (1, 2, 3), 4, 0),)
+    made = of('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 2, 3], stiffness: 4, length: 0.5}',
+              '{angular_velocity: [1, 0, 0], position: [0.5, 0.25, 1]}')
+    assert made.ties == (((0, 0, 1), (0.5, 1.75, 2), 4, 0.5),)
+    hinge = '{hinge: {axis: [0, 0, 1]}}'
+    made = of(hinge, 'spring: {stiffness: 8}, drag: {angular: 0.5}', '{rate: 2}')
+    assert (made.stiffness, made.slack, made.angular) == (8, 0, 0.5)
+    made = of(hinge, 'spring: {stiffness: 8, angle: 0.75, damping: 0.25}, drag: {angular: 0.5}',
+              '{angle: 0.5}')
+    assert (made.stiffness, made.slack, made.angular) == (8, 0.25, 0.75)
+    with pytest.raises(BadInput, match='several torsion springs'):
+        of(hinge, 'spring: {stiffness: 8}, spring: {stiffness: 8}', '{}')
+
+
 def test_half_an_ulp_moves_equal_numbers_together_and_leaves_zero():
     move = inputs.Moved(3)
     with mp.workprec(BITS):
         assert move(0.03) == move(0.03)
         assert abs(move(0.03) - mpf(0.03)) == mpf(float(np.spacing(0.03))) / 2
         assert move(0.0) == 0
+    numbers = [1.0 + k / 64.0 for k in range(64)]
+    with mp.workprec(BITS):
+        shifts = [(move(x) - mpf(x)) / mpf(float(np.spacing(x))) for x in numbers]
+        assert set(shifts) == {mpf(1) / 2, -mpf(1) / 2}
+        assert 20 < shifts.count(mpf(1) / 2) < 44    # drawn
