@@ -7,6 +7,7 @@ The references in test/data are made by Gragg's extrapolation.
 import dataclasses
 import json
 import pathlib
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -180,9 +181,9 @@ def test_a_reference_computed_now_is_the_cached_one():
 
 
 class Drifting:
-    """A motion whose omega is wrong by a part that falls with the bits; the attitude is at rest."""
+    """A motion whose omega is wrong by a part that the bits tell; the attitude is at rest."""
 
-    wrong = {reference.BITS: mpf(0)}
+    wrong: ClassVar = {}
 
     def __init__(self, given, bits):
         self.omega = given.omega[0] * (1 + self.wrong[bits])
@@ -202,7 +203,7 @@ def spun(rate, monkeypatch, check, floor, draws=3):
 
 
 def test_digits_are_those_in_which_two_computations_agree_at_every_time(monkeypatch):
-    """omega rises to 12 rad/s at 4 s: its difference is relative there, absolute below 1 rad/s."""
+    """The rate at 4 s is 12 rad/s: its difference is relative; absolute below 1 rad/s."""
     found = spun(3.0, monkeypatch, mpf(2) ** -100, mpf(0))
     assert found.times.tolist() == [k / 8 for k in range(1, 33)]
     assert found.digits == pytest.approx(100.0 * np.log10(2.0), abs=1e-12)
@@ -215,7 +216,7 @@ def test_digits_end_where_the_computations_are_the_same(monkeypatch):
 
 
 def test_the_floor_is_the_largest_effect_of_half_an_ulp(monkeypatch):
-    """That of 3 is 2^-52; the two signs are drawn, and one of them adds to what is wrong anyway."""
+    """That of 3 is 2^-52; signs are drawn, and one of them adds to what is wrong anyway."""
     found = spun(3.0, monkeypatch, mpf(0), mpf(2) ** -52, draws=8)
     rate = 2.0**-52 * (1.0 + 3.0)
     assert found.floor_omega == pytest.approx(rate * found.times, rel=1e-12, abs=0.0)

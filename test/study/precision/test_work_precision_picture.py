@@ -71,8 +71,8 @@ def test_variants_of_one_line_are_joined_to_the_points_that_no_cheaper_one_beats
 def test_of_equal_errors_and_of_equal_costs_the_first_point_is_kept():
     """The joined line has the name and the sign of a peer of its variants, and no variant."""
     engine = [line('engine', (1.0, 1e-4), (0.5, 1e-3), peer=True, control='step', variant='stiff'),
-              line('engine', (0.5, 2e-3), (0.8, 1e-4), (0.25, 4e-3), peer=True, control='tolerance',
-                   variant='soft', notes=['first', 'second', 'last'])]
+              line('engine', (0.5, 2e-3), (0.8, 1e-4), (0.25, 4e-3), peer=True,
+                   control='tolerance', variant='soft', notes=['first', 'second', 'last'])]
     joined, = table.fronts(engine)
     assert [(one['error'], one['cpu']['median']) for one in joined['points']] == [
         (0.8, 1e-4), (0.5, 1e-3), (0.25, 4e-3)]
