@@ -192,14 +192,14 @@ class Drifting:
         return (mpf(0), mpf(0), mpf(0), mpf(1)), (mpf(0), self.omega * time, mpf(0))
 
 
-def spun(rate, monkeypatch, check, floor, draws=3):
+def spun(rate, monkeypatch, check, floor, draws=3, progress=lambda part: None):
     """Return the Reference of a body by the made-up motion."""
     monkeypatch.setattr(reference, 'Turning', Drifting)
     monkeypatch.setattr(Drifting, 'wrong', {
         reference.BITS: mpf(0), reference.CHECK_BITS: check, reference.FLOOR_BITS: floor})
     scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
                         f'effects: []\ninitial: {{angular_velocity: [{rate!r}, 0, 0]}}\n')
-    return reference.compute(scene, 4.0, draws)
+    return reference.compute(scene, 4.0, draws, progress)
 
 
 def test_digits_are_those_in_which_two_computations_agree_at_every_time(monkeypatch):
@@ -213,6 +213,13 @@ def test_digits_are_those_in_which_two_computations_agree_at_every_time(monkeypa
 
 def test_digits_end_where_the_computations_are_the_same(monkeypatch):
     assert spun(3.0, monkeypatch, mpf(0), mpf(0)).digits == pytest.approx(60.0, abs=1e-12)
+
+
+def test_the_share_that_is_done_rises_evenly_to_one(monkeypatch):
+    """There are two runs and one for each draw, of 32 times each."""
+    parts = []
+    spun(3.0, monkeypatch, mpf(0), mpf(0), draws=3, progress=parts.append)
+    assert parts == pytest.approx([k / 160 for k in range(1, 161)], abs=1e-15)
 
 
 def test_the_floor_is_the_largest_effect_of_half_an_ulp(monkeypatch):
