@@ -230,6 +230,26 @@ def test_the_floor_is_the_largest_effect_of_half_an_ulp(monkeypatch):
     assert (found.floor == 0.0).all()
 
 
+@pytest.mark.parametrize('size', [1.0, -1.0, 2.5])
+@pytest.mark.parametrize('angle', [0.0, 1e-25, 0.3, 1.0, 3.1])
+def test_distances_are_angles_and_lengths_whatever_the_size_and_sign_of_a_quaternion(size, angle):
+    half = mpf(angle) / 2
+    with mp.workprec(200):
+        start = tuple(mpf(x) / 2 for x in (1, -1, 1, 1))
+        turned = inputs.product(start, (mp.sin(half), mpf(0), mpf(0), mp.cos(half)))
+        true = reference.Reference(np.zeros(2), [start] * 2, [(mpf(1), mpf(2), mpf(3))] * 2,
+                                   np.zeros(2), np.zeros(2), 34.0)
+        given = [start, tuple(size * x for x in turned)]
+        spin = [(mpf(1), mpf(2), mpf(3)), (mpf(1) + mpf(2)**-90, mpf(2), mpf(3))]
+    # outside mpmath works with 53 bits
+    angles, lengths = true.distances(given, spin)
+    assert angles == pytest.approx([0.0, angle], rel=1e-15, abs=1e-40)
+    assert lengths.tolist() == [0.0, 2.0**-90]
+    angles, lengths = true.errors(np.array([[0.5, -0.5, 0.5, 0.5, 1.0, 2.0, 3.0],
+                                            [-0.5, 0.5, -0.5, -0.5, 1.0, 2.0, 3.5]]))
+    assert (angles.tolist(), lengths.tolist()) == ([0.0, 0.0], [0.0, 0.5])
+
+
 def test_a_reference_is_saved_to_34_digits(tmp_path, monkeypatch):
     monkeypatch.setattr(reference, 'FOLDER', tmp_path)
     problem = suite.problem('racket')
