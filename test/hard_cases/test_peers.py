@@ -104,6 +104,7 @@ def excess(omega):
     # it starts with (2, 1, 0), an excess of 5/3, and the energy 3
     (False, lambda time: (2.0 - time, 1.0, 5.0), 0.0),
     (False, lambda time: (2.0, 1.0 + (time > 1.0), 0.0), 1.0 / 3.0),
+    (False, lambda time: (2.0, 1.0 + (0.0 < time < 0.006), 0.0), 1.0 / 3.0),
     (True, lambda time: (2.0, 1.0 + (time > 1.0), 0.0), 8.0 / 9.0),
     (True, lambda time: (2.0 * (1.0 - time / 2.0), 1.0 - time / 2.0, 3.0 + time), 0.0),
     (True, lambda time: (1.5, 0.0, 0.0), 0.25)])
