@@ -154,6 +154,7 @@ def test_peers_are_asked_what_opposite_impulses_leave():
     asked = []
 
     def state(time, problem):
+        assert problem.duration == 0.1
         asked.append((time, problem.scene.initial.angular_velocity.copy()))
         return (0.0, 0.0, 0.0, 1.0), problem.scene.initial.angular_velocity
     question = questions.cancel([(0.1, 0.2, 0.3), (-0.1, -0.2, -0.297)])
