@@ -50,6 +50,15 @@ def test_each_run_has_a_recording_of_its_own(ended, monkeypatch, capsys):
     assert (shown, heading) == (f'shown {path}_report/report.txt', 'next:')
     assert [line.split('#')[0].split()[1:] for line in commands] == [
         ['-m', 'rigid_body_sim', 'analyze', path], ['-m', 'rigid_body_sim', 'view', path]]
+    assert all(line.split()[0] == os.path.relpath(sys.executable) for line in commands)
+
+
+def test_it_is_a_racket_at_1_khz_for_20_s_unless_told_otherwise(monkeypatch):
+    given = []
+    monkeypatch.setattr(command, '_node', lambda options, name: given.append(options) or (2, None))
+    assert command.main([]) == 2
+    [options] = given
+    assert (options.scene, options.rate, options.duration) == ('tennis_racket', 1000.0, 20.0)
 
 
 def test_json_is_the_last_thing_on_stdout(ended, capsys):

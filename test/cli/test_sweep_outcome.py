@@ -2,6 +2,7 @@
 """What the command `sweep` says of an outcome that is made up: numbers, texts, exit statuses."""
 
 import json
+import logging
 
 import numpy as np
 import pytest
@@ -133,3 +134,29 @@ def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch, capsys):
                           '--dask', 'tcp://nowhere:1')
     assert status == 2 and err.count('\n') == 1
     assert "no scheduler answers at 'tcp://nowhere:1' (nobody at tcp://nowhere:1)" in err
+
+
+def test_a_client_works_in_silence_for_this_sweep_alone_and_is_closed(monkeypatch, capsys):
+    """What fails while it is closed is not told: the sweep has ended well."""
+    distributed = pytest.importorskip('distributed')
+    names = ('distributed', 'distributed.client', 'asyncio', 'tornado.application')
+    before = [logging.getLogger(name).level for name in names]
+    told_to = []
+
+    class Client:
+        def __init__(self, address, timeout, set_as_default):
+            assert (address, set_as_default) == ('tcp://here:1', False) and timeout > 1.0
+
+        def close(self, timeout):
+            told_to.append('close')
+            raise OSError('the scheduler is gone')
+    monkeypatch.setattr(distributed, 'Client', Client)
+    try:
+        status, _, err = told(monkeypatch, capsys, outcome({}), '--output', 'a.zarr',
+                              '--dask', 'tcp://here:1')
+        assert (status, err, told_to) == (0, '', ['close'])
+        for name in names:
+            assert not logging.getLogger(name).isEnabledFor(logging.CRITICAL)
+    finally:
+        for name, level in zip(names, before, strict=True):
+            logging.getLogger(name).setLevel(level)

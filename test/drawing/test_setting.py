@@ -6,6 +6,7 @@ import pytest
 
 from rigid_body_sim.drawing import setting
 from rigid_body_sim.drawing.body import drawing_of
+from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 
 
@@ -43,10 +44,42 @@ def test_the_ground_is_the_table_or_just_below_all_that_turns():
     ball = scene('table', '', 'solid_sphere: {radius: 0.5}', '[0, 0, 0]')
     assert setting.ground_of(ball, 9.0).height == pytest.approx(ball.initial.position[2] - 0.5)
     assert setting.ground_of(None, 2.0).height == pytest.approx(-2.2)
+    assert setting.ground_of(scene('pivot', TURNED), 2.0).height == pytest.approx(3.0 - 2.2)
+
+
+def test_the_ground_of_a_plane_is_the_plane_itself():
+    """Its normal is the z axis of the ground, which is level for other bodies."""
+    slope = parse_scene(
+        'scene: s\nbody: {mass: 1, inertia: [0.1, 0.1, 0.1], surface: {sphere: {radius: 0.5}}}\n'
+        'constraint: {table: {normal: [0.6, 0, 0.8]}}\n'
+        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: 0.3}]\ninitial: {}\n')
+    ground = setting.ground_of(slope, 9.0)
+    assert ground.height == 0.0
+    assert rotate(*ground.axes, 0.0, 0.0, 1.0) == pytest.approx((0.6, 0.0, 0.8), abs=1e-15)
+    for one in (scene('free'), scene('table', '', 'solid_sphere: {radius: 0.5}', '[0, 0, 0]')):
+        assert setting.ground_of(one, 2.0).axes == (0.0, 0.0, 0.0, 1.0)
+
+
+def test_springs_have_the_ends_that_the_scene_gives():
+    tied = parse_scene(
+        'scene: s\nbody: {mass: 1, inertia: [0.1, 0.1, 0.1]}\nconstraint: free\n'
+        'effects: [spring: {at: [0, 0, 1], anchor: [1, 2, 3], stiffness: 4}, gravity: {g: 9.81}, '
+        'spring: {at: [1, 0, 0], anchor: [0, 0, 5], stiffness: 2}]\ninitial: {}\n')
+    found = setting.springs_of(tied)
+    assert [(one.at.tolist(), one.anchor.tolist()) for one in found] == [
+        ([0.0, 0.0, 1.0], [1.0, 2.0, 3.0]), ([1.0, 0.0, 0.0], [0.0, 0.0, 5.0])]
+    door = parse_scene(
+        'scene: s\nbody: {mass: 1, inertia: [0.1, 0.1, 0.1]}\n'
+        'constraint: {hinge: {axis: [0, 0, 1]}}\neffects: [spring: {stiffness: 4}]\n'
+        'initial: {}\n')
+    assert setting.springs_of(door) == setting.springs_of(scene('free')) == []
+    assert setting.springs_of(None) == []
 
 
 def test_a_column_carries_a_pivot_and_an_axle_goes_through_a_hinge():
+    moved, = setting.holder_of(scene('pivot', TURNED), 2.0)
     column, = setting.holder_of(scene('pivot'), 2.0)
+    assert moved.vertices == pytest.approx(np.add(column.vertices, [1.0, 2.0, 3.0]))
     # its tip is at the pivot, its foot on the ground
     assert column.vertices[:, 2].max() == pytest.approx(0.0, abs=1e-14)
     assert column.vertices[:, 2].min() == pytest.approx(-2.2)

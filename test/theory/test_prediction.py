@@ -84,6 +84,7 @@ def test_ball_rolls_when_and_as_fast_as_predicted(scene, overrides):
 
 
 @pytest.mark.without_numba
+@pytest.mark.filterwarnings('error')
 @pytest.mark.parametrize(('scene', 'overrides'), [
     ('sphere', []), ('free_body', ['initial.angular_velocity=[0.0, 1.0, 0.0]']),
     ('driven_body', ['torque.value=[0, 1, 1]']),

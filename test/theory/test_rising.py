@@ -48,9 +48,9 @@ def test_a_slow_top_rests_and_a_fast_one_stands_on_its_stem(jellett, expected):
 
 
 # measured: 4e-8; the least of a parabola is found to the root of an ulp
-def test_between_them_the_energy_is_level_at_the_inclination_of_a_top():
+@pytest.mark.parametrize('x', [0.25, 0.245])
+def test_between_them_the_energy_is_level_at_the_inclination_of_a_top(x):
     """E = lambda^2/(2 D) + m g h: its derivative by x = cos theta vanishes at the least energy."""
-    x = 0.25
     D = A * R * R * (1.0 - x * x) + C * (R * x - OFF) ** 2
     slope = -2.0 * A * R * R * x + 2.0 * C * R * (R * x - OFF)
     jellett = math.sqrt(-2.0 * M * G * OFF * D * D / slope)

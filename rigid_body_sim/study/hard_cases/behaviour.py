@@ -143,12 +143,12 @@ def draw_shot():
     return Outcome(abs(v - DRAWN) + abs(slip), 8.0 * EPSILON, 'm/s', 'rounding of speed and slip')
 
 
-def relaxing_scene(c, omega, inertia=(1.0, 2.0, 3.0)):
+def relaxing_scene(c, omega, inertia=questions.INERTIA):
     """Return the scene of a body that loses energy."""
     return parse_scene(RELAXING.format(c=c, omega=list(omega), inertia=list(inertia)))
 
 
-def relaxing(c, omega, seconds, inertia=(1.0, 2.0, 3.0), accuracy=1e-12):
+def relaxing(c, omega, seconds, inertia=questions.INERTIA, accuracy=1e-12):
     """Return energies above L^2/(2 I_max) (relative) and States at 400 times."""
     simulation = Simulation(relaxing_scene(c, omega, inertia), accuracy=accuracy)
     states = simulation.states(np.linspace(0.0, seconds, 400))

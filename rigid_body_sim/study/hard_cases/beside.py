@@ -121,7 +121,7 @@ def angle(found, expected):
     """Return the angle (rad) between an attitude and one given by its digits."""
     with mp.workdps(50):
         p, q = [mpf(float(x)) for x in found], [mpf(x) for x in expected]
-        if not mp.fdot(p, p) * mp.fdot(q, q) > 0:
+        if not mp.fdot(p, p) * mp.fdot(q, q) > 0:    # a NaN too
             return math.inf
         sign = 1 if mp.fdot(p, q) > 0 else -1
         across = mp.sqrt(sum((sign * a / mp.sqrt(mp.fdot(p, p)) - b / mp.sqrt(mp.fdot(q, q))) ** 2

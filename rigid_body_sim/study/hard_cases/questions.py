@@ -12,7 +12,8 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.study.hard_cases import beside
 from rigid_body_sim.study.hard_cases.case import Question
 
-MOMENTS = np.array([1.0, 2.0, 3.0])
+INERTIA = 1.0, 2.0, 3.0
+MOMENTS = np.array(INERTIA)
 STATES = 400
 
 

@@ -14,6 +14,7 @@ from rigid_body_sim.compilation.jit import HAVE_NUMBA
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.precision import (
     figure,
     measure,
@@ -71,6 +72,38 @@ def test_errors_are_rotation_angles_at_the_end_and_along_the_way(racket):
     assert point['energy_residual'] < 1e-15
     assert OFF / 10.0 < point['momentum_residual'] < 2.0 * OFF
     assert point['cpu']['least'] <= point['cpu']['median'] <= point['cpu']['most']
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('constraint', 'place', 'weight'), [
+    ('free', (0.0, 0.0, 0.0), 0.0), ('pivot', (0.1, -0.2, 0.4), 9.81),
+    ('{hinge: {axis: [0, 0.6, 0.8], through: [0.1, 0.2, 0]}}', (0.0, -0.4, 0.4), 9.81)])
+def test_energy_and_angular_momentum_are_about_the_point_of_reference(constraint, place, weight):
+    """T = omega.I omega/2 of the tensor about that point, by the parallel-axis theorem."""
+    scene = parse_scene(
+        'scene: a\nbody: {mass: 2, inertia: [[1, 0.1, 0], [0.1, 2, -0.2], [0, -0.2, 2.5]], '
+        f'center_of_mass: [0.1, -0.2, 0.4]}}\nconstraint: {constraint}\n'
+        'effects: [gravity: {g: 9.81}]\ninitial: {}\n')
+    arm, balance = np.array(place), measure.Balance(scene)
+    tensor = np.array([[1, 0.1, 0], [0.1, 2, -0.2], [0, -0.2, 2.5]]) + 2.0 * (
+        arm @ arm * np.eye(3) - np.outer(arm, arm))
+    q, omega = np.array([0.5, -0.1, 0.7, 0.5]), np.array([1.0, -2.0, 3.0])
+    momentum = rotate(*q, *(tensor @ omega))
+    energy = 0.5 * omega @ tensor @ omega + 2.0 * weight * rotate(*q, *arm)[2]
+    found, moment = balance.of(q, omega)
+    assert found == near(energy, rel=1e-14)
+    assert moment == near(momentum, rel=1e-13)
+    # relative to the energy, or to its largest potential part; a quaternion of another length
+    true = reference.Reference(np.zeros(1), [tuple(q)], [tuple(omega)], *np.zeros((2, 1)), 34.0)
+    residuals = balance.residuals(np.concatenate((3.0 * q, 1.01 * omega)), true)
+    kinetic = 0.5 * omega @ tensor @ omega
+    size = max(abs(energy), 2.0 * weight * np.linalg.norm(arm))
+    assert residuals['energy_residual'] == near((1.01**2 - 1.0) * kinetic / size, rel=1e-11)
+    assert residuals['momentum_residual'] == near(0.01, rel=1e-11)
+    rest = reference.Reference(
+        np.zeros(1), [tuple(q)], [(0.0, 0.0, 0.0)], *np.zeros((2, 1)), 34.0)
+    assert balance.residuals(np.concatenate((q, np.zeros(3))), rest) == {
+        'energy_residual': 0.0, 'momentum_residual': 0.0}
 
 
 def test_a_lucky_coarse_setting_does_not_end_a_sweep_but_round_off_does(racket):
@@ -246,6 +279,32 @@ def test_the_command_answers_in_json_and_refuses_in_one_line(tmp_path, capsys, m
                       ['--scene', 'racket', '--duration', '3']):
         assert work_precision.main(arguments) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('time', [0.0, 0.25])
+def test_strikes_act_at_the_start_and_on_the_way(time):
+    """The run is begun again, and goes on from one time to the next."""
+    problem = suite.of_scene('tennis_racket', [
+        'effects=[strike: {impulse: [0, 0, 0.5], point: [0.2, 0, 0], '
+        f'time: {time}}}]'], 2.0)
+    truth = reference.Reference(np.array([2.0]), [(0.0, 0.0, 0.0, 1.0)], [(0.0, 5.0, 0.0)],
+                                np.zeros(1), np.zeros(1), 34.0)
+    exact, more = (one for one in runner.ours(problem, truth) if one.control == 'none')
+    assert (exact.name, more.name) == ('exact', runner.ONE_MORE)
+    expected = Simulation(problem.scene).states([0.125, 1.0, 2.0]).vector[:, 1:8]
+    run = exact.make(None)
+    for _ in range(2):
+        run.start()
+        for at, state in zip([0.125, 1.0, 2.0], expected, strict=True):
+            run.to(at)
+            assert np.array(run.state()) == pytest.approx(state, abs=1e-12)
+    assert np.abs(expected[1] - Simulation('tennis_racket').states([1.0]).vector[0, 1:8]).max() > (
+        1e-3)
+    begun = runner.begun(problem.scene)
+    struck = Simulation(problem.scene).states([0.0]).vector[0]
+    assert np.array_equal(begun, struck)
+    assert np.array_equal(begun, problem.scene.initial.vector) == (time > 0.0)
 
 
 def test_steps_are_shares_of_a_radian_at_the_fastest_rate(racket):

@@ -4,9 +4,10 @@
 The references in test/data are made by Gragg's extrapolation.
 """
 
+import dataclasses
 import json
 import pathlib
-import types
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -179,45 +180,138 @@ def test_a_reference_computed_now_is_the_cached_one():
         assert max(map(apart, cached.omega, now.omega)) < 1e-31
 
 
-@pytest.mark.parametrize('kind', ['free', 'table'])
-@pytest.mark.parametrize(('turn', 'change', 'digits'), [
-    (lambda t: 1e-30 * (1 - t) * t, lambda t, of: 0, -np.log10(0.25e-30)),
-    (lambda t: 0, lambda t, of: 1e-28 * of * t, 28),    # relative to omega, 3 rad/s at the end
-    (lambda t: 0, lambda t, of: 1e-28 * t, -np.log10(0.5e-28)),    # but not where it is below 1
-    (lambda t: 1e-27 * t, lambda t, of: 1e-28 * of, 27), (lambda t: 0, lambda t, of: 0, 60)])
-def test_digits_and_floor_are_the_worst_of_all_times(monkeypatch, kind, turn, change, digits):
-    """Known motions about z: of the check, and of eight draws, which differ from the best."""
-    class Motion:
-        def __init__(self, made, bits):
-            self.bits, self.draw = bits, made.move
+class Drifting:
+    """A motion whose omega is wrong by a part that the bits tell; the attitude is at rest."""
 
-        def go(self, time):
-            """Return q and omega; their errors are those of the draw, or of the check."""
-            angle, rate = mpf(2) * time, mpf(max(4 * time - 1, 0.5))
-            if self.bits == reference.CHECK_BITS:
-                angle, rate = angle + turn(time), rate + change(time, rate)
-            elif self.bits == reference.FLOOR_BITS:
-                angle += {2: 0.01, 5: 0.02 * time}.get(self.draw, 0)
-                rate -= 0.1 * self.draw
-            half = angle / 2
-            return (mpf(0), mpf(0), mp.sin(half), mp.cos(half)), (mpf(0), mpf(0), rate)
+    wrong: ClassVar = {}
 
-    monkeypatch.setattr(inputs, 'of', lambda scene, move: types.SimpleNamespace(
-        kind=kind, move=move))
-    monkeypatch.setattr(inputs, 'Moved', lambda draw: draw)
-    monkeypatch.setattr(reference, 'Ball' if kind == 'table' else 'Turning', Motion)
+    def __init__(self, given, bits):
+        self.omega = given.omega[0] * (1 + self.wrong[bits])
+
+    def go(self, time):
+        return (mpf(0), mpf(0), mpf(0), mpf(1)), (mpf(0), self.omega * time, mpf(0))
+
+
+def spun(rate, monkeypatch, check, floor, draws=3, progress=lambda part: None):
+    """Return the Reference of a body by the made-up motion."""
+    monkeypatch.setattr(reference, 'Turning', Drifting)
+    monkeypatch.setattr(Drifting, 'wrong', {
+        reference.BITS: mpf(0), reference.CHECK_BITS: check, reference.FLOOR_BITS: floor})
+    scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        f'effects: []\ninitial: {{angular_velocity: [{rate!r}, 0, 0]}}\n')
+    return reference.compute(scene, 4.0, draws, progress)
+
+
+def test_digits_are_those_in_which_two_computations_agree_at_every_time(monkeypatch):
+    """The rate at 4 s is 12 rad/s: its difference is relative; absolute below 1 rad/s."""
+    found = spun(3.0, monkeypatch, mpf(2) ** -100, mpf(0))
+    assert found.times.tolist() == [k / 8 for k in range(1, 33)]
+    assert found.digits == pytest.approx(100.0 * np.log10(2.0), abs=1e-12)
+    found = spun(0.125, monkeypatch, mpf(2) ** -100, mpf(0))    # 0.5 rad/s at the end
+    assert found.digits == pytest.approx(101.0 * np.log10(2.0), abs=1e-12)
+
+
+def test_digits_end_where_the_computations_are_the_same(monkeypatch):
+    assert spun(3.0, monkeypatch, mpf(0), mpf(0)).digits == pytest.approx(60.0, abs=1e-12)
+
+
+def test_the_share_that_is_done_rises_evenly_to_one(monkeypatch):
+    """There are two runs and one for each draw, of 32 times each."""
     parts = []
-    found = reference.compute(None, 1.0, progress=parts.append)
-    times = np.arange(1, reference.SAMPLES + 1) / reference.SAMPLES
-    assert found.times.tolist() == times.tolist()
-    assert found.digits == pytest.approx(digits, abs=1e-6)
-    assert found.floor == pytest.approx(np.maximum(0.01, 0.02 * times))
-    assert found.floor_omega == pytest.approx(0.7 + 0 * times)
-    count = 10 * reference.SAMPLES
-    assert parts == pytest.approx(np.arange(1, count + 1) / count)
-    errors = found.errors(np.array([[*map(float, one), *map(float, other)] for one, other in zip(
-        found.orientation, found.omega)]))
-    assert np.max(errors) < 1e-15
+    spun(3.0, monkeypatch, mpf(0), mpf(0), draws=3, progress=parts.append)
+    assert parts == pytest.approx([k / 160 for k in range(1, 161)], abs=1e-15)
+
+
+def test_the_floor_is_the_largest_effect_of_half_an_ulp(monkeypatch):
+    """That of 3 is 2^-52; signs are drawn, and one of them adds to what is wrong anyway."""
+    found = spun(3.0, monkeypatch, mpf(0), mpf(2) ** -52, draws=8)
+    rate = 2.0**-52 * (1.0 + 3.0)
+    assert found.floor_omega == pytest.approx(rate * found.times, rel=1e-12, abs=0.0)
+    assert (found.floor == 0.0).all()
+
+
+@pytest.mark.parametrize('size', [1.0, -1.0, 2.5])
+@pytest.mark.parametrize('angle', [0.0, 1e-25, 0.3, 1.0, 3.1])
+def test_distances_are_angles_and_lengths_whatever_the_size_and_sign_of_a_quaternion(size, angle):
+    half = mpf(angle) / 2
+    with mp.workprec(200):
+        start = tuple(mpf(x) / 2 for x in (1, -1, 1, 1))
+        turned = inputs.product(start, (mp.sin(half), mpf(0), mpf(0), mp.cos(half)))
+        true = reference.Reference(np.zeros(2), [start] * 2, [(mpf(1), mpf(2), mpf(3))] * 2,
+                                   np.zeros(2), np.zeros(2), 34.0)
+        given = [start, tuple(size * x for x in turned)]
+        spin = [(mpf(1), mpf(2), mpf(3)), (mpf(1) + mpf(2)**-90, mpf(2), mpf(3))]
+    # outside mpmath works with 53 bits
+    angles, lengths = true.distances(given, spin)
+    assert angles == pytest.approx([0.0, angle], rel=1e-15, abs=1e-40)
+    assert lengths.tolist() == [0.0, 2.0**-90]
+    angles, lengths = true.errors(np.array([[0.5, -0.5, 0.5, 0.5, 1.0, 2.0, 3.0],
+                                            [-0.5, 0.5, -0.5, -0.5, 1.0, 2.0, 3.5]]))
+    assert (angles.tolist(), lengths.tolist()) == ([0.0, 0.0], [0.0, 0.5])
+
+
+def test_a_reference_is_saved_to_34_digits(tmp_path, monkeypatch):
+    monkeypatch.setattr(reference, 'FOLDER', tmp_path)
+    problem = suite.problem('racket')
+    with mp.workprec(reference.BITS):
+        third = mpf(1) / 3
+        made = reference.Reference(
+            np.array([1.0, problem.duration]), [(third,) * 4] * 2, [(third, mpf(0), -third)] * 2,
+            np.array([1.23456e-15, 0.0]), np.array([2.0, 9.87654e-9]), 31.4159)
+        reference.save('racket', problem, made)
+        found = reference.load(problem)
+        assert abs(found.orientation[1][3] - third) < 1e-34
+        assert abs(found.omega[0][2] + third) < 1e-34
+    assert found.times.tolist() == [1.0, problem.duration]
+    assert (found.floor.tolist(), found.floor_omega.tolist()) == (
+        [1.235e-15, 0.0], [2.0, 9.877e-9])
+    assert found.digits == 31.4
+    longer = dataclasses.replace(problem, duration=101.0)
+    assert reference.load(longer) is None
+    assert reference.load(dataclasses.replace(problem, scene=suite.problem(
+        'driven_body').scene)) is None
+    assert reference.load(dataclasses.replace(problem, name='nowhere')) is None
+
+
+def of(constraint, effects, initial='{angular_velocity: [1, 0, 0]}', center='[0.25, 0, 0.5]'):
+    """Return the numbers that the references get for a scene."""
+    return inputs.of(parse_scene(
+        'scene: a\nbody: {mass: 1, inertia: [1, 2, 2.5], '
+        f'center_of_mass: {center}}}\nconstraint: {constraint}\neffects: [{effects}]\n'
+        f'initial: {initial}\n'), inputs.exactly)
+
+
+def test_what_a_scene_lacks_is_zero():
+    made = of('free', '')
+    assert (made.g, made.linear, made.angular, made.inner, made.mu, made.radius, made.stiffness,
+            made.slack, made.quadratic, made.angular_quadratic) == (0,) * 10
+    assert (made.arm, made.axis, made.couples, made.strikes, made.ties) == (
+        (0, 0, 0), None, (), (), ())
+
+
+def test_arms_and_levers_are_from_the_point_of_reference_and_from_the_centre_of_mass():
+    made = of('{hinge: {axis: [0, 0, 2], through: [1, 0, 0.25]}}',
+              'strike: {impulse: [0, 1, 0], point: [2, 0.5, 1], time: 2}, '
+              'strike: {impulse: [0, 2, 0], point: [1, 0, 0], time: 1}', '{}')
+    assert (made.arm, made.axis) == ((-0.75, 0, 0.25), (0, 0, 1))
+    assert [(time, impulse, lever) for time, impulse, lever, *_ in made.strikes] == [
+        (1.0, (0, 2, 0), (0.75, 0, -0.5)), (2.0, (0, 1, 0), (1.75, 0.5, 0.5))]
+
+
+def test_springs_are_read_as_they_are_written():
+    made = of('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 2, 3], stiffness: 4}')
+    assert made.ties == (((0, 0, 1), (1, 2, 3), 4, 0),)
+    made = of('pivot', 'spring: {at: [0, 0, 1], anchor: [1, 2, 3], stiffness: 4, length: 0.5}',
+              '{angular_velocity: [1, 0, 0], position: [0.5, 0.25, 1]}')
+    assert made.ties == (((0, 0, 1), (0.5, 1.75, 2), 4, 0.5),)
+    hinge = '{hinge: {axis: [0, 0, 1]}}'
+    made = of(hinge, 'spring: {stiffness: 8}, drag: {angular: 0.5}', '{rate: 2}')
+    assert (made.stiffness, made.slack, made.angular) == (8, 0, 0.5)
+    made = of(hinge, 'spring: {stiffness: 8, angle: 0.75, damping: 0.25}, drag: {angular: 0.5}',
+              '{angle: 0.5}')
+    assert (made.stiffness, made.slack, made.angular) == (8, 0.25, 0.75)
+    with pytest.raises(BadInput, match='several torsion springs'):
+        of(hinge, 'spring: {stiffness: 8}, spring: {stiffness: 8}', '{}')
 
 
 def test_half_an_ulp_moves_equal_numbers_together_and_leaves_zero():
@@ -226,3 +320,8 @@ def test_half_an_ulp_moves_equal_numbers_together_and_leaves_zero():
         assert move(0.03) == move(0.03)
         assert abs(move(0.03) - mpf(0.03)) == mpf(float(np.spacing(0.03))) / 2
         assert move(0.0) == 0
+    numbers = [1.0 + k / 64.0 for k in range(64)]
+    with mp.workprec(BITS):
+        shifts = [(move(x) - mpf(x)) / mpf(float(np.spacing(x))) for x in numbers]
+        assert set(shifts) == {mpf(1) / 2, -mpf(1) / 2}
+        assert 20 < shifts.count(mpf(1) / 2) < 44    # drawn

@@ -68,6 +68,29 @@ def test_variants_of_one_line_are_joined_to_the_points_that_no_cheaper_one_beats
     assert drawn == [1.0, 0.5, 0.1, 0.02, 0.01]
 
 
+def test_of_equal_errors_and_of_equal_costs_the_first_point_is_kept():
+    """The joined line has the name and the sign of a peer of its variants, and no variant."""
+    engine = [line('engine', (1.0, 1e-4), (0.5, 1e-3), peer=True, control='step', variant='stiff'),
+              line('engine', (0.5, 2e-3), (0.8, 1e-4), (0.25, 4e-3), peer=True,
+                   control='tolerance', variant='soft', notes=['first', 'second', 'last'])]
+    joined, = table.fronts(engine)
+    assert [(one['error'], one['cpu']['median']) for one in joined['points']] == [
+        (0.8, 1e-4), (0.5, 1e-3), (0.25, 4e-3)]
+    assert [one['setting'] for one in joined['points']] == [
+        'soft, step 1', 'stiff, step 1', 'soft, step 1']
+    assert (joined['name'], joined['variant'], joined['control'], joined['is_peer']) == (
+        'engine', '', 'step', True)
+    text = table.lines(RESULT | {'lines': engine, 'refused': {}})
+    assert [row for row in text if row.startswith('  engine: ')] == ['  engine: last']
+
+
+@pytest.mark.parametrize(('ratio', 'text'), [
+    (None, '-'), (2.0, '1/0.5'), (0.0101, '1/99'), (0.0015, '1/667'), (1.0 / 1234.0, '1/1234'),
+    (1.0 / 12345.6, '1/12346')])
+def test_a_share_is_one_over_a_number(ratio, text):
+    assert table._share(ratio) == text
+
+
 def test_who_leads_at_some_level_is_drawn_thick():
     ours = [one for one in RESULT['lines'] if not one['is_peer']]
     assert figure.leaders(ours) == {'exact, one more state'}
