@@ -59,7 +59,7 @@ class Drive(NamedTuple):
     axes: float          # IN_BODY or IN_WORLD
     a: Vector            # its direction (unit vector) in these axes
     growth: Pair         # N/I, rad/s^2
-    ratio: Pair          # I/I1
+    ratio: float         # I/I1
     excess: Pair         # (I - I1)/I1
     rotor: Pair          # h/I1, rad/s
 
@@ -119,7 +119,7 @@ def drive(scene):
             return None
         size = hypot3(*total.couple)
         direction = [component / size for component in total.couple]
-        return Drive(IN_WORLD, direction, quotient_of(size, moments[0]), (1.0, 0.0), (0.0, 0.0),
+        return Drive(IN_WORLD, direction, quotient_of(size, moments[0]), 1.0, (0.0, 0.0),
                      (0.0, 0.0))
     if len(set(moments)) == 1:
         along, whole = (torque, size) if size else (carried, spinning)
@@ -128,8 +128,7 @@ def drive(scene):
         if hypot3(*across(direction, carried)) > ULPS * spinning:
             return None
         return Drive(IN_BODY, rotate(*inertia.axes, *direction), quotient_of(size, moments[0]),
-                     (1.0, 0.0), (0.0, 0.0),
-                     quotient_of(math.copysign(spinning, h), moments[0]))
+                     1.0, (0.0, 0.0), quotient_of(math.copysign(spinning, h), moments[0]))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         if (moments[i] == moments[j] and max(abs(torque[i]), abs(torque[j])) <= ULPS * size
@@ -139,7 +138,7 @@ def drive(scene):
             unit[k] = sign
             (I, I1), _ = in_integers((moments[k], moments[i]))
             return Drive(IN_BODY, rotate(*inertia.axes, *unit),
-                         quotient_of(abs(torque[k]), moments[k]), quotient(I, I1),
+                         quotient_of(abs(torque[k]), moments[k]), quotient(I, I1)[0],
                          quotient(I - I1, I1), quotient_of(sign * carried[k], moments[i]))
     return None
 
@@ -192,9 +191,8 @@ def state(anchor, time, out):
     held = load_anchor(anchor)
     drive, dt = held.drive, two_sum(time, -held.start)
     t, gained = dt[0], drive.growth[0] * dt[0]
-    ratio = drive.ratio[0]
-    x, y, z, w = ramped_rotation(ratio * held.along + drive.rotor[0], held.across,
-                                 ratio * drive.growth[0], t)
+    x, y, z, w = ramped_rotation(drive.ratio * held.along + drive.rotor[0], held.across,
+                                 drive.ratio * drive.growth[0], t)
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = held.e1, held.e2, held.e3
     x, y, z = ax * x + bx * y + cx * z, ay * x + by * y + cy * z, az * x + bz * y + cz * z
     omega = sum_of(held.omega, stretched(gained, drive.a))

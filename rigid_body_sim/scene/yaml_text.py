@@ -285,7 +285,7 @@ def _effect(mapping, keys, where):
                 effects[place] = {effect: {}}
             if keys[0] == str(place):
                 keys[0] = next(iter(effects[place]))
-            if len(keys) > 1 and effects[place][keys[0]] is None:
+            if effects[place][keys[0]] is None:
                 effects[place][keys[0]] = {}
             return effects[place]
     raise BadInput(

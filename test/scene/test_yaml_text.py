@@ -4,6 +4,7 @@
 import pytest
 
 from rigid_body_sim import BadInput, Simulation, parse_scene
+from rigid_body_sim.scene.yaml_text import override, parse
 
 SCENE = """\
 scene: stone
@@ -158,3 +159,71 @@ def test_overrides_of_the_wrong_kind_are_refused_in_one_line(overrides):
 
 def test_one_line_alone_is_an_override():
     assert Simulation('tennis_racket', overrides='body.mass=2.5').scene.body.mass == 2.5
+
+
+LISTED = """\
+scene: stone
+body: {mass: 1.0, inertia: [1.0, 2.0, 3.0]}
+constraint: free
+effects:
+- gravity
+- {drag: }
+- torque: {value: [0, 0, 1], frame: body}
+initial: {euler_zyz: [0.1, 0.2, 0.3], spin: 2.0}
+"""
+
+
+@pytest.mark.parametrize(('assignment', 'keys', 'expected'), [
+    ('gravity.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects.gravity.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects.0.g=2.5', ['effects', 0], {'gravity': {'g': 2.5}}),
+    ('effects[0].gravity=7', ['effects', 0], {'gravity': {'gravity': 7}}),
+    ('drag.linear=2', ['effects', 1], {'drag': {'linear': 2}}),
+    ('effects.1.linear=2', ['effects', 1], {'drag': {'linear': 2}}),
+    ('effects.drag=2', ['effects', 1], {'drag': 2}),
+    ('effects.1=2', ['effects', 1], {'drag': 2}),
+    ('torque.body=2', ['effects', 2, 'torque', 'body'], 2),    # a key of the scene, too
+    ('torque.value.2=3', ['effects', 2], {'torque': {'value': [0, 0, 3], 'frame': 'body'}}),
+    (' effects[2].value[0] = 3', ['effects', 2],
+     {'torque': {'value': [3, 0, 1], 'frame': 'body'}}),
+    ('effects=[torque]', ['effects'], ['torque']),
+    ('body.inertia=[+1, 2., 3]', ['body', 'inertia'], [1, 2.0, 3]),
+    ('body.inertia[2]=4', ['body'], {'mass': 1.0, 'inertia': [1.0, 2.0, 4]}),
+    ('body.density=3', ['body'], {'density': 3, 'inertia': [1.0, 2.0, 3.0]}),
+    ('about=a=b', ['about'], 'a=b'),
+    ('initial.tilt=1', ['initial'], {'tilt': 1, 'spin': 2.0}),
+    ('initial.angular_velocity=[1, 2, 3]', ['initial'],
+     {'euler_zyz': [0.1, 0.2, 0.3], 'angular_velocity': [1, 2, 3]}),
+    ('initial.position=[1, 2, 3]', ['initial'],
+     {'euler_zyz': [0.1, 0.2, 0.3], 'spin': 2.0, 'position': [1, 2, 3]}),
+    ('view.camera.far=true', ['view'], {'camera': {'far': True}})])
+def test_an_override_sets_one_value_and_leaves_the_others(assignment, keys, expected):
+    mapping, wanted = parse(LISTED, 'stone'), parse(LISTED, 'stone')
+    holder = wanted
+    for key in keys[:-1]:
+        holder = holder[key]
+    holder[keys[-1]] = expected
+    override(mapping, assignment, 'stone')
+    assert mapping == wanted
+
+
+@pytest.mark.parametrize(('assignment', 'problem'), [
+    ('effects.3.g=1', "no effect '3' in this scene; it lists ['gravity', 'drag', 'torque']"),
+    ('effects.strike.g=1', "no effect 'strike' in this scene; it lists ['gravity', 'drag'"),
+    ('torque.value.3=1', "no place '3' in a list of 3; places run from 0 to 2"),
+    ('torque.value.x=1', "no place 'x' in a list of 3; places run from 0 to 2"),
+    ('torque.value.-1=1', "no place '-1' in a list of 3; places run from 0 to 2"),
+    ('torque.value.3.x=1', "no place '3' in a list of 3; places run from 0 to 2"),
+    ('body.mass.x=1', "'x' lies inside a plain value; end the path at the value itself"),
+    ('body.mass.x.y=1', "'x' lies inside a plain value; end the path at the value itself"),
+    ('=1', "got '=1'; an override is key.path=value, for example body.mass=2.0"),
+    ('about=a: b', 'mapping values are not allowed here'),
+    ('mass', "got 'mass'; an override is key.path=value, for example body.mass=2.0")])
+def test_an_override_of_what_is_not_there_is_refused(assignment, problem):
+    mapping = parse(LISTED, 'stone')
+    with pytest.raises(BadInput) as refused:
+        override(mapping, assignment, 'stone')
+    path = assignment.partition('=')[0]
+    assert str(refused.value).startswith(f'stone: {path or assignment!r}')
+    assert f': {problem}' in str(refused.value)
+    assert mapping == parse(LISTED, 'stone')
