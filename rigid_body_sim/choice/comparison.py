@@ -33,13 +33,13 @@ def apart_from_mean(states, finer):
     finer : list of array (n, 14)
         Those that are not finite are left out.
     """
-    best, total, many = finer[0][:, ORIENTATION], np.zeros((len(states), 4)), 0
-    for one in (other[:, ORIENTATION] for other in finer):
-        if np.isfinite(one).all():
-            same = (best * one).sum(axis=1) >= 0.0    # q and -q are the same attitude
-            total, many = total + np.where(same[:, None], one, -one), many + 1
+    best, total = finer[0][:, ORIENTATION], np.zeros((len(states), 4))
+    finite = [one for one in (other[:, ORIENTATION] for other in finer) if np.isfinite(one).all()]
+    for one in finite:
+        same = (best * one).sum(axis=1) >= 0.0    # q and -q are the same attitude
+        total += np.where(same[:, None], one, -one)
     mean = finer[0].copy()
-    if many:
+    if finite:
         mean[:, ORIENTATION] = [normalised(*row) for row in total.tolist()]
     return apart(states, mean)
 

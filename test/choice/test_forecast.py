@@ -53,6 +53,8 @@ DRIVE = 'torque: {value: [0, 0, 1], frame: body}'
     # rates that grow with time from 0 turn a body by an angle that goes with its square
     (lambda t: t, 2.0, [DRIVE], 9.0), (lambda t: t, 3.0, [DRIVE], 27.0),
     (lambda t: t, 4.0, [DRIVE], 81.0), (lambda t: t, 6.0, [DRIVE], 81.0),
+    (lambda t: 3.0 * t, 3.0, [DRIVE], 27.0),
+    (lambda t: np.where(t < 0.7, t, math.inf), 2.0, [DRIVE], 3.0),
     (lambda t: t, 0.5, [DRIVE], 9.0), (lambda t: t, 2.0, [], 3.0),
     # from a rate of 1 to 2 the rate is 4 at three times the time, the angle 6 times as large
     (lambda t: 1 + t, 1.0, [DRIVE], 6.0),
@@ -65,6 +67,21 @@ def test_errors_go_with_the_angle_or_its_square_where_a_drive_speeds_a_body_up(
     states = np.zeros((runs.LOOKS, 14))
     states[:, 7] = rates(times)
     found = forecast.later(coasting_scene(effects=effects), states, times ** powers, 3.0)
+    assert found == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(('errors', 'longer', 'expected'), [
+    # none in the first half: with the square of the angle, which goes with that of time
+    (lambda t: np.maximum(t - 0.5, 0.0), 2.0, 0.5 * 16.0),
+    (lambda t: np.maximum(t - 0.5, 0.0), 1.0, 0.5), (lambda t: t ** 3, 1.0, 1.0),
+    (lambda t: 0.0 * t, 3.0, 0.0),
+    (lambda t: np.where(t < 0.7, t, math.inf), 3.0, math.inf),
+    # the largest of all, not the last
+    (lambda t: np.where(t < 0.8, 4.0 * t, t), 1.0, 3.1875)])
+def test_errors_of_a_body_sped_up_from_rest(errors, longer, expected):
+    times, states = runs.looks(1.0), np.zeros((runs.LOOKS, 14))
+    states[:, 7] = times
+    found = forecast.later(coasting_scene(effects=[DRIVE]), states, errors(times), longer)
     assert found == pytest.approx(expected)
 
 
@@ -99,3 +116,13 @@ def test_a_missed_accuracy_is_said_with_the_time_until_which_it_is_met():
 def test_an_error_is_told_with_the_figures_that_show_that_it_is_too_large(expected, shown):
     line = forecast.missed(1e-12, 10.0, expected, 4.0)
     assert f' {shown}' in line and '1.0e-12 rad' not in line
+
+
+@pytest.mark.parametrize(('expected', 'met_until', 'line'), [
+    (None, 3.0, None), (1e-9, 3.0, None), (1e-12, None, None),
+    (2e-9, None, 'the error expected within 12.5 s is 2.0e-09 rad'),
+    (2e-9, 0.0, 'the error expected within 12.5 s is 2.0e-09 rad; it is met at no time'),
+    (2e-9, 1 / 3, 'the error expected within 12.5 s is 2.0e-09 rad; it is met until 0.333 s')])
+def test_what_is_missed_is_said_in_one_line(expected, met_until, line):
+    found = forecast.missed(1e-9, 12.5, expected, met_until)
+    assert found == (line and f'the accuracy asked, 1e-09 rad, is missed: {line}')

@@ -28,6 +28,27 @@ def test_rounding_is_half_an_ulp_of_the_angle_at_the_largest_rate_so_far():
         HALF_ULP * (4.0 + np.array([3.0, 18.0, 27.0, 36.0])), abs=0.0)
 
 
+@pytest.mark.parametrize(('effects', 'added'), [
+    # a torque of 2 N m on moments of 4 kg m^2 turns by 0.25 t^2
+    ((), 0.0), (('torque: {value: [0, 0, 2], frame: body}',), 0.25)])
+def test_bodies_may_round_half_an_ulp_of_all_they_turn_from_their_starts(effects, added):
+    starts = np.zeros((4, 14))
+    starts[:, 5:8] = [3, 0, 4], [1, 2, 2], [0, 0, 0], [2, -3, 6]
+    found = rounding.of_starts(coasting_scene(effects=effects), starts, 8.0)
+    assert found == near(HALF_ULP * (4.0 + 8.0 * np.array([5, 3, 0, 7]) + added * 64.0), rel=1e-15)
+
+
+def test_bodies_that_hang_may_round_what_their_weight_adds():
+    """2 sqrt(M g r/I) = 2 sqrt(1 x 4 x 1/4) = 2 rad/s, with I = 3 + 1 x 1^2 about the pivot."""
+    held = parse_scene('scene: s\nbody: {mass: 1, inertia: [3, 3, 4], '
+                       'center_of_mass: [0, 0, -1]}\nconstraint: pivot\n'
+                       'effects: [gravity: {g: 4}]\ninitial: {angular_velocity: [0, 0, 3]}\n')
+    starts = np.zeros((2, 14))
+    starts[1, 5:8] = 3, 4, 12
+    found = rounding.of_starts(held, starts, 8.0)
+    assert found == near(HALF_ULP * (4.0 + 8.0 * np.array([2, 15])), rel=1e-15)
+
+
 def test_conditioning_is_what_half_an_ulp_of_the_start_does():
     """A body that coasts about z: each number of q counts, and omega by its size times time.
 

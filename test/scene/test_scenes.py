@@ -4,6 +4,7 @@
 The line has the file, the key path, the value and what would be right.
 """
 
+import dataclasses
 import math
 import pathlib
 
@@ -238,3 +239,24 @@ def test_held_at_its_centre_of_mass_a_body_runs_with_a_note(scene, overrides, ca
     assert note in said.err
     assert '"potential": 0.0' in said.out
     assert describe(load_scene(scene, overrides))['notes'] == [note]
+
+
+@pytest.mark.parametrize(('fields', 'field', 'weight'), [
+    ([], (0.0, 0.0, 0.0), 0.0), (['9.5'], (0.0, 0.0, -9.5), 9.5),
+    (['[1, 2, 4]'], (1.0, 2.0, 4.0), None), (['[0, 0, 0.5]'], (0.0, 0.0, 0.5), None),
+    (['9.5', '[0, 0, 2]', '1.5'], (0.0, 0.0, -9.0), 9.0),
+    (['[1, 2, 4]', '[8, 16, 32]', '[64, 128, 256]'], (73.0, 146.0, 292.0), None),
+    (['[1, 2, 4]', '[-1, -2, -9]'], (0.0, 0.0, -5.0), 5.0),
+    (['[1, 2, 4]', '[-1, 2, -9]'], (0.0, 4.0, -5.0), None),
+    (['[1, 2, 4]', '[1, -2, -9]'], (2.0, 0.0, -5.0), None)])
+def test_uniform_fields_add(fields, field, weight):
+    """Of effects that ship only gravity is one, and is listed once; others may join it."""
+    effects = [effect for one in fields
+               for effect in parse_scene(RACKET, [f'effects=[gravity: {{g: {one}}}]']).effects]
+    dragged = parse_scene(RACKET, ['effects=[drag: {linear: 1.0}]'])
+    scene = dataclasses.replace(dragged, effects=tuple(effects))
+    assert scene.field == field
+    assert scene.weight == weight
+    scene = dataclasses.replace(dragged, effects=(*effects, *dragged.effects))
+    assert scene.field == field
+    assert scene.weight is None

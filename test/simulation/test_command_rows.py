@@ -51,6 +51,9 @@ def test_rows_go_to_a_journal_and_back():
 @pytest.mark.parametrize(('force', 'torque', 'frame', 'words'), [
     ((1, 2), (0, 0, 0), 'world', 'three finite'), ((1, 2, 3), (0,) * 4, 'world', 'three finite'),
     (3, (0, 0, 0), 'world', 'three'), (('a', 2, 3), (0, 0, 0), 'world', 'three'),
+    ({1, 2, 3}, (0, 0, 0), 'world', 'three'), ((1, 2, 3), {4, 5, 6}, 'world', 'three'),
+    ({1: 0, 2: 0, 3: 0}, (0, 0, 0), 'world', 'three'),
+    ((1, 2, 3), {4: 0, 5: 0, 6: 0}, 'body', 'three'),
     ((1, 2, 3), (0, 0, 0), 'moon', "got frame 'moon'")])
 def test_what_is_no_command_is_refused(force, torque, frame, words):
     with pytest.raises(BadInput, match=words):
