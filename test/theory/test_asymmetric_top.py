@@ -74,7 +74,7 @@ def test_erratum():
     assert squared / theory.frequency_squared(OMEGA0, 3.0, 9.0, 5.0) == near(3.0, 1e-14)
 
 
-MOMENTS = 1.0, 2.0, 2.25
+MOMENTS = 2.0, 4.0, 4.5
 SEPARATRIX = 0.75, 1.0, 1.0
 # on either side of the separatrix, far from it and near to it
 TUMBLING = [(0.5, 2.0, 0.4), (2.0, 0.5, -0.2), (-0.3, 0.1, 1.5), (1e-3, 3.0, 2e-3),
