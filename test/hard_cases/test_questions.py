@@ -2,22 +2,17 @@
 """The questions to the peers, put to this package: who is right gets no error but rounding."""
 
 import math
-import os
-import time
 import types
 
 import kept
 import numpy as np
 import pytest
-from near import near
 from soak import IN_SOAK
 
-from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.numerics.rotations import rotate
-from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import beside, contact
-from rigid_body_sim.study.hard_cases.case import Question
 from rigid_body_sim.study.hard_cases.table import CASES
 
 ASKED = {f'{case.group} {case.name}': case for case in CASES if case.asked}
@@ -41,18 +36,16 @@ class Run:
         return np.concatenate([state.orientation, state.angular_velocity])
 
 
-def peer(control='step', seen=None, wrong=None):
+def peer(wrong=None):
     """Return this package as the module of a peer; `wrong` changes its states."""
     def runners(problem, reference):
         def make(setting):
-            if seen is not None:
-                seen.append((problem, reference, setting))
             run = Run(problem.scene)
             if wrong:
                 right = run.state
                 run.state = lambda: wrong(run._time, right())
             return run
-        yield types.SimpleNamespace(control=control, make=make)
+        yield types.SimpleNamespace(control='step', make=make)
     return types.SimpleNamespace(NAME='ours', runners=runners)
 
 
@@ -81,37 +74,6 @@ def test_a_peer_that_finds_nothing_says_so():
     assert asked['8 1e-300 off the smallest axis'].ask(still) == 'never leaves'
     lost = peer(wrong=lambda time, state: state * (math.nan if time > 0.5 else 1.0))
     assert math.isnan(asked['8 stiff: c dt = 1'].ask(lost))
-
-
-@pytest.mark.parametrize(('control', 'setting'), [('step', 1e-3), ('tolerance', 1e-12)])
-@pytest.mark.parametrize(('span', 'step'), [(0.7, 1e-3), (0.0127, 0.0127 / 13), (1e-5, 1e-5)])
-def test_a_peer_gets_the_problem_and_its_usual_setting(control, setting, span, step):
-    seen, scene = [], load_scene('tennis_racket')
-    asked = beside.smooth(scene, span, 'rad', lambda run: run.to(span) or 3.5)
-    assert asked.ask(peer(control, seen)) == 3.5
-    [(problem, reference, given)] = seen
-    assert (problem.name, problem.duration, problem.scene) == ('tennis_racket', span, scene)
-    assert np.array_equal(reference.omega, [scene.initial.angular_velocity])
-    assert given == near(step if control == 'step' else setting, 1e-14)
-    assert (asked.time, asked.unit) == (span, 'rad')
-
-
-def test_the_last_time_that_peers_can_reach_is_asked_for():
-    states = [{'time': one, 'orientation': ['0', '0', '0', '1']}
-              for one in (1.0, 50.0, 100.0, 100.1)]
-    for omega, last in ((1.0, 100.0), (100.0, 100.0), (100.1, 50.0), (1e4, 1.0), (1e6, 1.0)):
-        record = {'angular_velocity': [0.0, 0.6 * omega, 0.8 * omega], 'states': states}
-        assert beside.attitude(load_scene('sphere'), record).time == last
-
-
-@pytest.mark.parametrize('turn', [0.0, 1e-12, 0.3, 3.0])
-def test_the_angle_between_attitudes_has_neither_sign_nor_size(turn):
-    q = [0.0, 0.6 * math.sin(0.5 * turn), 0.8 * math.sin(0.5 * turn), math.cos(0.5 * turn)]
-    for size in (1.0, -1.0, 2.5):
-        assert beside.angle([size * x for x in q], ['0', '0', '0', '1']) == near(turn, 1e-14)
-        assert beside.angle(q, [str(0.5 * size * x) for x in q]) < 1e-15
-    for nothing in (0.0, math.nan):
-        assert beside.angle([nothing] * 4, ['0', '0', '0', '1']) == math.inf
 
 
 SHOTS = [name for name in ASKED if name[0] == '7']
@@ -165,36 +127,6 @@ def test_runge_and_kutta_miss_the_onset_of_rolling_by_a_step(name):
     asked = ASKED[name].asked
     kept.check(f'shot_{name[2:].replace(" ", "_").replace("/", "_")}', [
         asked.time, asked.unit, asked.ask(types.SimpleNamespace(NAME='numba RK4'))])
-
-
-def answered(how, monkeypatch):
-    """Return the answer of a peer that does something."""
-    pytest.importorskip('numba')
-    monkeypatch.setattr(beside, 'PATIENCE', 1.0)
-    return beside.answer(types.SimpleNamespace(NAME='peer'), Question(1.0, 'rad', how))
-
-
-def refuse(module):
-    from rigid_body_sim.study.precision.runner import RefusedError
-    raise RefusedError('no  such\nbody')
-
-
-def fail(module):
-    raise NotConverged('no step ' + 100 * 'x')
-
-
-@pytest.mark.parametrize(('how', 'said'), [
-    (lambda module: 0.25, 0.25), (lambda module: f'{module.NAME} says so', 'peer says so'),
-    (lambda module: math.nan, 'NaN in silence'), (lambda module: math.inf, 'NaN in silence'),
-    (lambda module: os._exit(3), 'crashes'), (lambda module: 1 // 0, 'fails: ZeroDivisionError: '),
-    (lambda module: time.sleep(60.0), 'no answer in 1 s'), (refuse, 'refuses: no such body'),
-    (fail, 'fails: no step ' + 82 * 'x')])
-def test_whatever_a_peer_does_is_an_answer(how, said, monkeypatch):
-    found = answered(how, monkeypatch)
-    if isinstance(said, str) and said.endswith(': '):
-        assert found.startswith(said)
-    else:
-        assert found == said
 
 
 def test_peers_that_are_installed_are_told_from_the_others():
