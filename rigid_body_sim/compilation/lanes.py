@@ -7,13 +7,15 @@ instructions to a function that numba is compiling. Sums are made in the order i
 written; a product and the sum that takes it (`gather`) round once, on every processor.
 """
 
+from itertools import chain
+
 import numpy as np
 
 from rigid_body_sim.compilation.fused import fma_array, python_fma
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 LANES = 8
-PLACES = tuple(range(LANES))
+NARROW = 4    # numbers in a register of a processor without AVX-512
 ONE_BITS = 1023 << 52    # the bits of the double 1.0
 
 
@@ -104,20 +106,26 @@ class Plain:
             values = act(i, values)
         return values
 
+    def groups(self, portions):
+        """Return the lists whose sums are made in one loop: one of all portions."""
+        return [[*chain.from_iterable(portions)]]
+
 
 if HAVE_NUMBA:
     from llvmlite import ir
     from numba.core import cgutils
 
     DOUBLE, INDEX, PLACE = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
-    EIGHT = ir.VectorType(DOUBLE, LANES)
-    ABSENT = ir.Constant(EIGHT, ir.Undefined)
 
     class Written:
-        """The operations of Plain as LLVM instructions; an array is its first number's address."""
+        """The operations of Plain as LLVM instructions; an array is its first number's address.
 
-        def __init__(self, builder):
-            self._builder = builder
+        There are eight lanes, or fewer of a recurrence whose lanes are apart.
+        """
+
+        def __init__(self, builder, lanes=LANES):
+            self.lanes, self._builder = lanes, builder
+            self._vector = ir.VectorType(DOUBLE, lanes)
 
         def number(self, value):
             """Return a constant."""
@@ -125,7 +133,7 @@ if HAVE_NUMBA:
 
         def none(self):
             """Return eight zeros."""
-            return ir.Constant(EIGHT, [0.0] * LANES)
+            return self._each(0.0)
 
         def times(self, a, b):
             """Return a b."""
@@ -141,18 +149,16 @@ if HAVE_NUMBA:
 
         def gather(self, a, b, c):
             """Return a b + c, rounded once."""
-            name = 'llvm.fma.v8f64' if a.type == EIGHT else 'llvm.fma.f64'
-            kind = ir.FunctionType(a.type, [a.type] * 3)
-            return self._builder.call(
-                cgutils.get_or_insert_function(self._builder.module, kind, name), [a, b, c])
+            return self._function('fma', a, b, c)
 
         def everywhere(self, x):
             """Return a vector of eight times x."""
-            return self._shuffled(self.with_lane(ABSENT, 0, x), ABSENT, [0] * LANES)
+            absent = ir.Constant(self._vector, ir.Undefined)
+            return self._shuffled(self.with_lane(absent, 0, x), absent, [0] * self.lanes)
 
         def next(self, v):
             """Return the lanes moved one place down, with 0 in the last."""
-            return self._shuffled(v, self.none(), [place + 1 for place in PLACES])
+            return self._shuffled(v, self.none(), range(1, self.lanes + 1))
 
         def first(self, v):
             """Return the number in the first lane."""
@@ -165,7 +171,7 @@ if HAVE_NUMBA:
         def load(self, array, at):
             """Return the eight numbers of an array that begin at a place."""
             found = self._builder.load(
-                self._builder.bitcast(self._place(array, at), EIGHT.as_pointer()))
+                self._builder.bitcast(self._place(array, at), self._vector.as_pointer()))
             found.align = 8    # the alignment of a double: arrays begin anywhere
             return found
 
@@ -175,8 +181,8 @@ if HAVE_NUMBA:
 
         def put(self, v, array, at):
             """Write eight numbers into an array."""
-            self._builder.store(
-                v, self._builder.bitcast(self._place(array, at), EIGHT.as_pointer())).align = 8
+            address = self._builder.bitcast(self._place(array, at), self._vector.as_pointer())
+            self._builder.store(v, address).align = 8
 
         def divided(self, a, b):
             """Return a / b."""
@@ -184,9 +190,7 @@ if HAVE_NUMBA:
 
         def root(self, a):
             """Return the square root of a."""
-            kind = ir.FunctionType(EIGHT, [EIGHT])
-            return self._builder.call(
-                cgutils.get_or_insert_function(self._builder.module, kind, 'llvm.sqrt.v8f64'), [a])
+            return self._function('sqrt', a)
 
         def power(self, a, exponent):
             """Return a to an exponent between 0 and 1, for a > 0, to 6 % of the exponent.
@@ -194,11 +198,10 @@ if HAVE_NUMBA:
             The bits of a double, read as an integer, grow as its logarithm.
             """
             builder, one = self._builder, ir.Constant(
-                ir.VectorType(INDEX, LANES), [ONE_BITS] * LANES)
-            bits = builder.sitofp(builder.sub(builder.bitcast(a, one.type), one), EIGHT)
-            bits = builder.fptosi(
-                builder.fmul(bits, ir.Constant(EIGHT, [exponent] * LANES)), one.type)
-            return builder.bitcast(builder.add(bits, one), EIGHT)
+                ir.VectorType(INDEX, self.lanes), [ONE_BITS] * self.lanes)
+            bits = builder.sitofp(builder.sub(builder.bitcast(a, one.type), one), self._vector)
+            bits = builder.fptosi(builder.fmul(bits, self._each(exponent)), one.type)
+            return builder.bitcast(builder.add(bits, one), self._vector)
 
         def where_less(self, a, b, x, y):
             """Return x where a < b, else y."""
@@ -233,6 +236,24 @@ if HAVE_NUMBA:
                 results.append(phi)
             return results
 
+        def groups(self, portions):
+            """Return the lists whose sums are made in one loop: the registers hold these."""
+            return portions if self.lanes < LANES else [[*chain.from_iterable(portions)]]
+
+        def share(self, array, i):
+            """Return the address of the i-th lanes of an array: as many as a register holds."""
+            return self._place(array, self.place(0, self.lanes, i))
+
+        def _each(self, value):
+            return ir.Constant(self._vector, [value] * self.lanes)
+
+        def _function(self, name, *values):
+            kind = values[0].type
+            of = f'v{self.lanes}f64' if kind == self._vector else 'f64'
+            return self._builder.call(cgutils.get_or_insert_function(
+                self._builder.module, ir.FunctionType(kind, [kind] * len(values)),
+                f'llvm.{name}.{of}'), values)
+
         def _index(self, i):
             return ir.Constant(INDEX, i) if isinstance(i, int) else i
 
@@ -241,10 +262,16 @@ if HAVE_NUMBA:
 
         def _shuffled(self, u, v, places):
             return self._builder.shuffle_vector(
-                u, v, ir.Constant(ir.VectorType(PLACE, LANES), places))
+                u, v, ir.Constant(ir.VectorType(PLACE, self.lanes), list(places)))
 
 
-def compiled_lanes(recurrence, results):
+    def _in_register(context):
+        """Return how many of eight numbers a register of the processor compiled for holds."""
+        _, _, features = context.codegen().magic_tuple()
+        return LANES if '+avx512f' in features.split(',') else NARROW
+
+
+def compiled_lanes(recurrence, results, apart=False):
     """Return a kernel ``(array, numbers) -> tuple`` that runs a recurrence.
 
     Parameters
@@ -253,6 +280,10 @@ def compiled_lanes(recurrence, results):
         It may load from the array and store into it, and returns a list of `results` numbers.
         Each of the numbers is a float, or a tuple of floats that it sees as a list.
     results : int
+    apart : bool
+        No lane takes anything from another, and there are no results. Where a register holds
+        fewer than eight numbers, the lanes take turns: all eight would not fit into the
+        registers.
     """
     if not HAVE_NUMBA:
         return lambda array, numbers: tuple(recurrence(Plain(), array, *numbers))
@@ -267,7 +298,12 @@ def compiled_lanes(recurrence, results):
                 cgutils.unpack_tuple(builder, one) if isinstance(kind, types.BaseTuple) else one
                 for kind, one in zip(
                     signature.args[1], cgutils.unpack_tuple(builder, given[1]), strict=True)]
-            found = recurrence(Written(builder), address, *values)
+            if apart:
+                o = Written(builder, _in_register(context))
+                found = o.repeat(0, LANES // o.lanes, [], lambda i, _: recurrence(
+                    o, o.share(address, i), *values))
+            else:
+                found = recurrence(Written(builder), address, *values)
             return context.make_tuple(builder, signature.return_type, found)
         return types.UniTuple(types.float64, results)(array, numbers), write
     return kernel

@@ -14,16 +14,15 @@ to the result of integrating omega alone.
 """
 
 from functools import partial
-from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.marching.batch_lane import (
     COARSE,
     CONSTANT,
     DIRECTIONS,
     DRAG,
     EULER,
+    GYROSCOPIC,
     OMEGA,
     ORDER,
     UNKNOWNS,
@@ -43,19 +42,12 @@ from rigid_body_sim.integrators.marching.batch_step import (
 from rigid_body_sim.numerics.rotations import rotate_back
 
 
-class Sums(NamedTuple):
-    """The sums of `_products`: of e x omega what is added and what is subtracted, then omega'."""
-
-    e1: tuple[Pair, Pair, Pair]
-    e2: tuple[Pair, Pair, Pair]
-    gyroscopic: Vector
+def _turning(e):
+    """Return the pairs of e x omega: of each component what is added and what is subtracted."""
+    return [(e + a, OMEGA + b) for j, k in ((1, 2), (2, 0), (0, 1)) for a, b in ((j, k), (k, j))]
 
 
-SUMS, GYROSCOPIC = layout(Sums).size, layout(Sums).part('gyroscopic').first
-# of each component of e1 and e2: places of what is added, and of what is subtracted
-SIGNED = [[[layout(Sums).part(name).part(i).part(sign).first for sign in (0, 1)]
-           for i in range(3)] for name in ('e1', 'e2')]
-OF_DIRECTIONS, OF_OMEGA = range(DIRECTIONS), range(OMEGA, UNKNOWNS)
+PORTIONS = [_turning(0), [*_turning(3), *GYROSCOPIC]]
 
 
 @compiled
@@ -71,30 +63,13 @@ def _directions(e):
     return (x1, y1, z1), (x2, y2, z2)
 
 
-def _products(o, sums, e, w, others):
-    """Return the 15 sums, those of e x omega by sign, with one more pair of orders.
-
-    Added are the products of e and w of one order with omega of the other.
-    """
-    made = list(sums)
-    for vector, places in zip(_directions(e), SIGNED, strict=True):
-        for i, (added, subtracted) in enumerate(places):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            for place, a, b in ((added, j, k), (subtracted, k, j)):
-                made[place] = o.gather(vector[a], others[b], made[place])
-    for i in range(3):
-        at = GYROSCOPIC + i
-        made[at] = o.gather(w[(i + 1) % 3], others[(i + 2) % 3], made[at])
-    return made
-
-
 def _fill(o, row, dragged=False):
     """Fill the coefficients of all orders from 1 on, with drag or without."""
-    def next_order(k, sums, e, w, constant):
-        e1, e2 = _directions(e)
-        changes = [o.plus(sums[added], o.minus(sums[subtracted]))
-                   for places in SIGNED for added, subtracted in places]
-        for i in range(3):
+    def next_order(k, sums, newest, constant):
+        e1, e2 = _directions([newest[i] for i in range(DIRECTIONS)])
+        changes = [o.plus(added, o.minus(subtracted))
+                   for added, subtracted in zip(sums[:12:2], sums[1:12:2], strict=True)]
+        for i, own in enumerate(sums[12:]):
             # terms that are known first come first
             rate = (
                 o.gather(row(V + i), e2[i], row(CONSTANT + i))
@@ -104,12 +79,12 @@ def _fill(o, row, dragged=False):
             for j in range(3):
                 rate = o.gather(row(U + 3 * i + j), e1[j], rate)
             for j in range(3) if dragged else ():
-                rate = o.gather(row(DRAG + 3 * i + j), w[j], rate)
-            changes.append(o.gather(row(EULER + i), sums[GYROSCOPIC + i], rate))
+                rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
+            changes.append(o.gather(row(EULER + i), own, rate))
         share = row.share(k)
         return [o.times(share, change) for change in changes]
 
-    fill(o, row, OF_DIRECTIONS, OF_OMEGA, SUMS, _products, next_order)
+    fill(o, row, range(UNKNOWNS), PORTIONS, next_order)
 
 
 def _unit(o, values, lost):

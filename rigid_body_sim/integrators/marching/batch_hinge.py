@@ -31,7 +31,7 @@ from rigid_body_sim.integrators.marching.batch_step import (
 from rigid_body_sim.numerics.rotations import rotate_back
 
 AXIS = 2    # the component of omega along the hinge
-X, Y, RATE = 0, 1, OMEGA + AXIS
+MOVING = X, Y, RATE = 0, 1, OMEGA + AXIS
 COUNTS = 4.0    # a term of the direction counts so many times: bodies err about as they do alone
 PULL, TORQUE, SLOWING = U + 3 * AXIS, CONSTANT + AXIS, DRAG + 3 * AXIS + AXIS
 
@@ -43,22 +43,16 @@ def unknowns(q, omega):
     return Unknowns((x, y, 0.0, 0.0, 0.0, 0.0), omega)
 
 
-def _products(o, sums, e, _, rates):
-    """Return the two sums of e x omega with one more pair of orders."""
-    (x, y), (to_x, to_y), (rate,) = e, sums, rates
-    return [o.gather(y, rate, to_x), o.gather(x, rate, to_y)]
-
-
 def _fill(o, row):
     """Fill the coefficients of all orders from 1 on."""
-    def next_order(k, turns, e, rate, constant):
-        (to_x, to_y), share = turns, row.share(k)
+    def next_order(k, sums, newest, constant):
+        (to_x, to_y), share = sums, row.share(k)
         change = row(TORQUE) if constant else o.none()
-        for place, value in zip((PULL, PULL + 1, SLOWING), (*e, *rate), strict=True):
-            change = o.gather(row(place), value, change)
+        for place, unknown in zip((PULL, PULL + 1, SLOWING), MOVING, strict=True):
+            change = o.gather(row(place), newest[unknown], change)
         return [o.times(share, change) for change in (to_x, o.minus(to_y), change)]
 
-    fill(o, row, (X, Y), (RATE,), 2, _products, next_order)
+    fill(o, row, MOVING, [[(Y, RATE), (X, RATE)]], next_order)
 
 
 def _unit(o, values, lost):
@@ -87,6 +81,6 @@ def _attitude(o, row, values, h):
     return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
 
 
-FORM = Form((X, Y, RATE), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+FORM = Form(MOVING, ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
 advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
 between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

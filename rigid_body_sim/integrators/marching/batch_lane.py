@@ -78,6 +78,9 @@ UNKNOWN, POINT, LANE = layout(Unknowns), layout(Point), layout(Lane)
 UNKNOWNS = UNKNOWN.size
 OMEGA = UNKNOWN.part('omega').first    # the first of its components
 
+# of each sum in omega' the two components of omega whose products it takes
+GYROSCOPIC = [(OMEGA + (i + 1) % 3, OMEGA + (i + 2) % 3) for i in range(3)]
+
 # rows; those of the coefficients follow those of the unknowns, which are order 0
 TIME, STEP, SCALE, LOST, QUATERNION, SERIES = (POINT.part(name).first for name in Point._fields)
 BEFORE_TIME, BEFORE_Q, BEFORE_SERIES = (LANE.part('before').part(name).first

@@ -118,7 +118,7 @@ class Rows:
         return found
 
 
-def fill(o, row, attitude, omega, count, products, next_order):
+def fill(o, row, unknowns, portions, next_order):
     """Fill the coefficients of all orders from 1 on by Cauchy sums, which are loops.
 
     The four terms with the two newest coefficients are added after a loop, so that it need not
@@ -126,45 +126,54 @@ def fill(o, row, attitude, omega, count, products, next_order):
 
     Parameters
     ----------
-    attitude, omega : sequence of int
-        Unknowns whose coefficients the products take.
-    count : int
-        How many sums there are.
-    products : function (o, sums, attitude, omega, others)
-        Returns the sums with the products of attitude and omega of one order with omega of the
-        other, `others`.
-    next_order : function (k, sums, attitude, omega, constant)
-        Returns the coefficients of the order k + 1, of those of the order k; `constant` says
-        whether k is 0.
+    unknowns : sequence of int
+        Those that move, in the order in which `next_order` returns them.
+    portions : list of lists of (int, int)
+        Of each sum the two unknowns whose products it takes, the second one a component of
+        omega. A portion is what few registers hold.
+    next_order : function (k, sums, newest, constant)
+        Returns the coefficients of the order k + 1, of the sums and of the coefficients of the
+        order k by unknown; `constant` says whether k is 0.
     """
+    groups = o.groups(portions)
+
     def coefficients(k):
-        return row.coefficients(k, attitude), row.coefficients(k, omega)
+        return dict(zip(unknowns, row.coefficients(k, unknowns), strict=True))
 
-    def both(sums, one, other):
+    def products(pairs, sums, one, other):
+        """Return the sums with the products of an order with omega of the other."""
+        return [o.gather(one[a], other[b], known)
+                for (a, b), known in zip(pairs, sums, strict=True)]
+
+    def both(pairs, sums, one, other):
         """Return the sums with the products of two orders, and the other way round."""
-        sums = products(o, sums, *one, other[1])
-        return products(o, sums, *other, one[1])
+        return products(pairs, products(pairs, sums, one, other), other, one)
 
-    def following(k, sums, newest, constant=False):
-        found = next_order(k, sums, *newest, constant)
-        for unknown, value in zip((*attitude, *omega), found, strict=True):
+    def following(k, newest, sums_of, constant=False):
+        sums = [*chain.from_iterable(
+            sums_of(pairs, [o.none()] * len(pairs)) for pairs in groups)]
+        found = next_order(k, sums, newest, constant)
+        for unknown, value in zip(unknowns, found, strict=True):
             row.put_coefficient(value, k, unknown)
-        return found[:len(attitude)], found[len(attitude):]
+        return dict(zip(unknowns, found, strict=True))
 
-    none, zeroth = [o.none()] * count, coefficients(0)
-    first = following(0, products(o, none, *zeroth, zeroth[1]), zeroth, True)
-    second = following(1, both(none, zeroth, first), first)
-    third = following(2, both(products(o, none, *first, first[1]), zeroth, second), second)
+    zeroth = coefficients(0)
+    first = following(
+        0, zeroth, lambda pairs, none: products(pairs, none, zeroth, zeroth), constant=True)
+    second = following(1, first, lambda pairs, none: both(pairs, none, zeroth, first))
+    third = following(2, second, lambda pairs, none: both(
+        pairs, products(pairs, none, first, first), zeroth, second))
 
     def order(k, values):
-        newest = values[:len(attitude)], values[len(attitude):]
+        newest = dict(zip(unknowns, values, strict=True))
 
-        def pair(i, sums):
-            return products(o, sums, *coefficients(i), coefficients(o.place(k, -1, i))[1])
-        sums = o.repeat(2, o.place(k, 1, -1), none, pair)
-        sums = both(sums, coefficients(1), coefficients(o.place(k, 1, -1)))
-        return [*chain(*following(k, both(sums, coefficients(0), newest), newest))]
-    o.repeat(3, row.order, [*chain(*third)], order)
+        def sums_of(pairs, none):
+            sums = o.repeat(2, o.place(k, 1, -1), none, lambda i, sums: products(
+                pairs, sums, coefficients(i), coefficients(o.place(k, -1, i))))
+            sums = both(pairs, sums, coefficients(1), coefficients(o.place(k, 1, -1)))
+            return both(pairs, sums, coefficients(0), newest)
+        return [*following(k, newest, sums_of).values()]
+    o.repeat(3, row.order, [*third.values()], order)
 
 
 def half_turn(o, angle):
@@ -307,9 +316,9 @@ def between(o, W, form):
 
 def advance_of(form, order):
     """Return the kernel (W, (tolerance2,)) of a step of a form, with series of an order."""
-    return compiled_lanes(partial(advance, form=form._replace(order=order)), 0)
+    return compiled_lanes(partial(advance, form=form._replace(order=order)), 0, apart=True)
 
 
 def between_of(form, order):
     """Return the kernel (W, ()) of what is between points, with series of an order."""
-    return compiled_lanes(partial(between, form=form._replace(order=order)), 0)
+    return compiled_lanes(partial(between, form=form._replace(order=order)), 0, apart=True)

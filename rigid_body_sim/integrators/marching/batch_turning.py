@@ -11,6 +11,7 @@ step.
 """
 
 from functools import partial
+from itertools import chain
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.integrators.marching.batch_lane import (
@@ -18,6 +19,7 @@ from rigid_body_sim.integrators.marching.batch_lane import (
     CONSTANT,
     DRAG,
     EULER,
+    GYROSCOPIC,
     OMEGA,
     ORDER,
     UNKNOWNS,
@@ -32,12 +34,14 @@ from rigid_body_sim.integrators.marching.batch_step import (
     square_of,
 )
 
-OF_Q, OF_OMEGA = range(4), range(OMEGA, UNKNOWNS)
-# q' is half the sum of what is added and what is subtracted: places in q, in omega
-X, Y, Z, W = OF_Q
+OF_Q = X, Y, Z, W = range(4)
+OF_OMEGA = range(OMEGA, UNKNOWNS)
+# q' is half the sum of what is added and what is subtracted: places in q, in omega. Each term has
+# a sum of its own: one that takes three products in turn would wait for each of them
 RATES = (((W, X), (Y, Z)), ((Z, Y),)), (((W, Y), (Z, X)), ((X, Z),)), \
     (((W, Z), (X, Y)), ((Y, X),)), ((), ((X, X), (Y, Y), (Z, Z)))
-TERMS = [term for signs in RATES for terms in signs for term in terms]
+*OF_VECTOR, OF_SCALAR = [[(a, OMEGA + b) for terms in signs for a, b in terms] for signs in RATES]
+PORTIONS = [[*chain.from_iterable(OF_VECTOR)], [*OF_SCALAR, *GYROSCOPIC]]
 COUNTS = 8.0    # a term of q counts so many times: bodies err about as they do alone
 
 
@@ -47,20 +51,9 @@ def unknowns(q, omega):
     return Unknowns((*q, 0.0, 0.0), omega)
 
 
-def _products(o, sums, q, w, others):
-    """Return the 15 sums, those of q' first, with one more pair of orders.
-
-    Added are the products of q and w of one order with omega of the other. Each term has a sum of
-    its own: one that takes three products in turn would wait for each of them.
-    """
-    pairs = [*((q[a], others[b]) for a, b in TERMS),
-             *((w[(i + 1) % 3], others[(i + 2) % 3]) for i in range(3))]
-    return [o.gather(a, b, known) for (a, b), known in zip(pairs, sums, strict=True)]
-
-
 def _fill(o, row, dragged=False):
     """Fill the coefficients of all orders from 1 on, with drag or without."""
-    def next_order(k, sums, q, w, constant):
+    def next_order(k, sums, newest, constant):
         share = row.share(k)
         half, terms, found = o.times(o.everywhere(o.number(0.5)), share), iter(sums), []
         for signs in RATES:
@@ -71,13 +64,13 @@ def _fill(o, row, dragged=False):
             found.append(o.times(half, rate))
         for i, own in enumerate(terms):
             rate = row(CONSTANT + i) if constant else o.none()
-            for j, rates in enumerate(w if dragged else ()):
-                rate = o.gather(row(DRAG + 3 * i + j), rates, rate)
+            for j in range(3) if dragged else ():
+                rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
             rate = o.gather(row(EULER + i), own, rate)
             found.append(o.times(share, rate))
         return found
 
-    fill(o, row, OF_Q, OF_OMEGA, len(TERMS) + len(OF_OMEGA), _products, next_order)
+    fill(o, row, (*OF_Q, *OF_OMEGA), PORTIONS, next_order)
 
 
 def _total(o, values):
