@@ -34,7 +34,6 @@ from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     advance_of,
     between_of,
-    fill,
     half_turn,
     restored,
     square_of,
@@ -63,28 +62,25 @@ def _directions(e):
     return (x1, y1, z1), (x2, y2, z2)
 
 
-def _fill(o, row, dragged=False):
-    """Fill the coefficients of all orders from 1 on, with drag or without."""
-    def next_order(k, sums, newest, constant):
-        e1, e2 = _directions([newest[i] for i in range(DIRECTIONS)])
-        changes = [o.plus(added, o.minus(subtracted))
-                   for added, subtracted in zip(sums[:12:2], sums[1:12:2], strict=True)]
-        for i, own in enumerate(sums[12:]):
-            # terms that are known first come first
-            rate = (
-                o.gather(row(V + i), e2[i], row(CONSTANT + i))
-                if constant
-                else o.times(row(V + i), e2[i])
-            )
-            for j in range(3):
-                rate = o.gather(row(U + 3 * i + j), e1[j], rate)
-            for j in range(3) if dragged else ():
-                rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
-            changes.append(o.gather(row(EULER + i), own, rate))
-        share = row.share(k)
-        return [o.times(share, change) for change in changes]
-
-    fill(o, row, range(UNKNOWNS), PORTIONS, next_order)
+def _next_order(o, row, k, sums, newest, constant, dragged=False):
+    """Return the next coefficients, with drag or without."""
+    e1, e2 = _directions([newest[i] for i in range(DIRECTIONS)])
+    changes = [o.plus(added, o.minus(subtracted))
+               for added, subtracted in zip(sums[:12:2], sums[1:12:2], strict=True)]
+    for i, own in enumerate(sums[12:]):
+        # terms that are known first come first
+        rate = (
+            o.gather(row(V + i), e2[i], row(CONSTANT + i))
+            if constant
+            else o.times(row(V + i), e2[i])
+        )
+        for j in range(3):
+            rate = o.gather(row(U + 3 * i + j), e1[j], rate)
+        for j in range(3) if dragged else ():
+            rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
+        changes.append(o.gather(row(EULER + i), own, rate))
+    share = row.share(k)
+    return [o.times(share, change) for change in changes]
 
 
 def _unit(o, values, lost):
@@ -166,9 +162,9 @@ def _attitude_of(o, row, values, h):
     return _attitude(o, values[:DIRECTIONS], _turned(o, row.q, row.angle(h)))
 
 
-FORM = Form(tuple(range(UNKNOWNS)), ORDER, 1.0, _fill, _unit, _attitude_of)
+FORM = Form(tuple(range(UNKNOWNS)), PORTIONS, ORDER, 1.0, _next_order, _unit, _attitude_of)
 advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
-DRAGGED = FORM._replace(fill=partial(_fill, dragged=True))
+DRAGGED = FORM._replace(next_order=partial(_next_order, dragged=True))
 advance_with_drag, coarse_advance_with_drag = (
     advance_of(DRAGGED, ORDER), advance_of(DRAGGED, COARSE))
 between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

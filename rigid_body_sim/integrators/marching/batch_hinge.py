@@ -23,7 +23,6 @@ from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     advance_of,
     between_of,
-    fill,
     half_turn,
     restored,
     square_of,
@@ -32,6 +31,7 @@ from rigid_body_sim.numerics.rotations import rotate_back
 
 AXIS = 2    # the component of omega along the hinge
 MOVING = X, Y, RATE = 0, 1, OMEGA + AXIS
+PORTIONS = [[(Y, RATE), (X, RATE)]]    # of x', of -y'
 COUNTS = 4.0    # a term of the direction counts so many times: bodies err about as they do alone
 PULL, TORQUE, SLOWING = U + 3 * AXIS, CONSTANT + AXIS, DRAG + 3 * AXIS + AXIS
 
@@ -43,16 +43,13 @@ def unknowns(q, omega):
     return Unknowns((x, y, 0.0, 0.0, 0.0, 0.0), omega)
 
 
-def _fill(o, row):
-    """Fill the coefficients of all orders from 1 on."""
-    def next_order(k, sums, newest, constant):
-        (to_x, to_y), share = sums, row.share(k)
-        change = row(TORQUE) if constant else o.none()
-        for place, unknown in zip((PULL, PULL + 1, SLOWING), MOVING, strict=True):
-            change = o.gather(row(place), newest[unknown], change)
-        return [o.times(share, change) for change in (to_x, o.minus(to_y), change)]
-
-    fill(o, row, MOVING, [[(Y, RATE), (X, RATE)]], next_order)
+def _next_order(o, row, k, sums, newest, constant):
+    """Return the next coefficients."""
+    (to_x, to_y), share = sums, row.share(k)
+    change = row(TORQUE) if constant else o.none()
+    for place, unknown in zip((PULL, PULL + 1, SLOWING), MOVING, strict=True):
+        change = o.gather(row(place), newest[unknown], change)
+    return [o.times(share, change) for change in (to_x, o.minus(to_y), change)]
 
 
 def _unit(o, values, lost):
@@ -81,6 +78,6 @@ def _attitude(o, row, values, h):
     return [o.none(), o.none(), *(o.times(scale, component) for component in found)]
 
 
-FORM = Form(MOVING, ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+FORM = Form(MOVING, PORTIONS, ORDER, COUNTS * COUNTS, _next_order, _unit, _attitude)
 advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
 between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)

@@ -43,13 +43,17 @@ class Form(NamedTuple):
     ----------
     moving : tuple of int
         The unknowns that change; the others stay 0.
+    portions : list of lists of (int, int)
+        Of each Cauchy sum the two unknowns whose products it takes, the second one a component of
+        omega. A portion is what sixteen registers hold; all sums if there is one.
     order : int
         Of the series: ORDER or COARSE.
     counts : float
         Factor on the square of a term of the attitude's unknowns. It makes a body err about as it
         does alone with the same tolerance, which is what `auto` has tried.
-    fill : function (o, row)
-        Fills the coefficients of all orders from 1 on.
+    next_order : function (o, row, k, sums, newest, constant)
+        Returns the coefficients of the order k + 1 of the unknowns that move, of the sums and of
+        the coefficients of the order k by unknown; `constant` says whether k is 0.
     unit : function (o, values, lost)
         Returns the unknowns brought back to unit length, and what their sums have lost.
     attitude : function (o, row, values, h)
@@ -57,9 +61,10 @@ class Form(NamedTuple):
     """
 
     moving: tuple
+    portions: list
     order: int
     counts: float
-    fill: Callable
+    next_order: Callable
     unit: Callable
     attitude: Callable
 
@@ -118,27 +123,16 @@ class Rows:
         return found
 
 
-def fill(o, row, unknowns, portions, next_order):
+def fill(o, row, form):
     """Fill the coefficients of all orders from 1 on by Cauchy sums, which are loops.
 
     The four terms with the two newest coefficients are added after a loop, so that it need not
     wait for them; the newest ones are handed on, since reading what was just written takes time.
-
-    Parameters
-    ----------
-    unknowns : sequence of int
-        Those that move, in the order in which `next_order` returns them.
-    portions : list of lists of (int, int)
-        Of each sum the two unknowns whose products it takes, the second one a component of
-        omega. A portion is what few registers hold.
-    next_order : function (k, sums, newest, constant)
-        Returns the coefficients of the order k + 1, of the sums and of the coefficients of the
-        order k by unknown; `constant` says whether k is 0.
     """
-    groups = o.groups(portions)
+    groups = o.groups(form.portions)
 
     def coefficients(k):
-        return dict(zip(unknowns, row.coefficients(k, unknowns), strict=True))
+        return dict(zip(form.moving, row.coefficients(k, form.moving), strict=True))
 
     def products(pairs, sums, one, other):
         """Return the sums with the products of an order with omega of the other."""
@@ -152,10 +146,10 @@ def fill(o, row, unknowns, portions, next_order):
     def following(k, newest, sums_of, constant=False):
         sums = [*chain.from_iterable(
             sums_of(pairs, [o.none()] * len(pairs)) for pairs in groups)]
-        found = next_order(k, sums, newest, constant)
-        for unknown, value in zip(unknowns, found, strict=True):
+        found = form.next_order(o, row, k, sums, newest, constant)
+        for unknown, value in zip(form.moving, found, strict=True):
             row.put_coefficient(value, k, unknown)
-        return dict(zip(unknowns, found, strict=True))
+        return dict(zip(form.moving, found, strict=True))
 
     zeroth = coefficients(0)
     first = following(
@@ -165,7 +159,7 @@ def fill(o, row, unknowns, portions, next_order):
         pairs, products(pairs, none, first, first), zeroth, second))
 
     def order(k, values):
-        newest = dict(zip(unknowns, values, strict=True))
+        newest = dict(zip(form.moving, values, strict=True))
 
         def sums_of(pairs, none):
             sums = o.repeat(2, o.place(k, 1, -1), none, lambda i, sums: products(
@@ -251,7 +245,7 @@ def advance(o, W, tolerance2, form):
     vector unit, in which every value is named once.
     """
     row = Rows(o, W, form.order)
-    form.fill(o, row)
+    fill(o, row, form)
     omega = [i for i in form.moving if i >= OMEGA]
     scale = row(SCALE)
     w = square_of(o, [row.coefficient(0, i) for i in omega])
@@ -316,9 +310,14 @@ def between(o, W, form):
 
 def advance_of(form, order):
     """Return the kernel (W, (tolerance2,)) of a step of a form, with series of an order."""
-    return compiled_lanes(partial(advance, form=form._replace(order=order)), 0, apart=True)
+    return _kernel(advance, form, order)
 
 
 def between_of(form, order):
     """Return the kernel (W, ()) of what is between points, with series of an order."""
-    return compiled_lanes(partial(between, form=form._replace(order=order)), 0, apart=True)
+    return _kernel(between, form, order)
+
+
+def _kernel(recurrence, form, order):
+    return compiled_lanes(partial(recurrence, form=form._replace(order=order)), 0,
+                          apart=len(form.portions) > 1)

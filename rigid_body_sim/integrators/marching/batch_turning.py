@@ -29,7 +29,6 @@ from rigid_body_sim.integrators.marching.batch_step import (
     Form,
     advance_of,
     between_of,
-    fill,
     restored,
     square_of,
 )
@@ -51,26 +50,23 @@ def unknowns(q, omega):
     return Unknowns((*q, 0.0, 0.0), omega)
 
 
-def _fill(o, row, dragged=False):
-    """Fill the coefficients of all orders from 1 on, with drag or without."""
-    def next_order(k, sums, newest, constant):
-        share = row.share(k)
-        half, terms, found = o.times(o.everywhere(o.number(0.5)), share), iter(sums), []
-        for signs in RATES:
-            added, subtracted = (_total(o, [next(terms) for _ in one]) for one in signs)
-            rate = o.minus(subtracted)
-            if added is not None:
-                rate = o.plus(added, rate)
-            found.append(o.times(half, rate))
-        for i, own in enumerate(terms):
-            rate = row(CONSTANT + i) if constant else o.none()
-            for j in range(3) if dragged else ():
-                rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
-            rate = o.gather(row(EULER + i), own, rate)
-            found.append(o.times(share, rate))
-        return found
-
-    fill(o, row, (*OF_Q, *OF_OMEGA), PORTIONS, next_order)
+def _next_order(o, row, k, sums, newest, constant, dragged=False):
+    """Return the next coefficients, with drag or without."""
+    share = row.share(k)
+    half, terms, found = o.times(o.everywhere(o.number(0.5)), share), iter(sums), []
+    for signs in RATES:
+        added, subtracted = (_total(o, [next(terms) for _ in one]) for one in signs)
+        rate = o.minus(subtracted)
+        if added is not None:
+            rate = o.plus(added, rate)
+        found.append(o.times(half, rate))
+    for i, own in enumerate(terms):
+        rate = row(CONSTANT + i) if constant else o.none()
+        for j in range(3) if dragged else ():
+            rate = o.gather(row(DRAG + 3 * i + j), newest[OMEGA + j], rate)
+        rate = o.gather(row(EULER + i), own, rate)
+        found.append(o.times(share, rate))
+    return found
 
 
 def _total(o, values):
@@ -95,9 +91,9 @@ def _attitude(o, row, values, h):
     return values[:len(OF_Q)]
 
 
-FORM = Form((*OF_Q, *OF_OMEGA), ORDER, COUNTS * COUNTS, _fill, _unit, _attitude)
+FORM = Form((*OF_Q, *OF_OMEGA), PORTIONS, ORDER, COUNTS * COUNTS, _next_order, _unit, _attitude)
 advance, coarse_advance = advance_of(FORM, ORDER), advance_of(FORM, COARSE)
-DRAGGED = FORM._replace(fill=partial(_fill, dragged=True))
+DRAGGED = FORM._replace(next_order=partial(_next_order, dragged=True))
 advance_with_drag, coarse_advance_with_drag = (
     advance_of(DRAGGED, ORDER), advance_of(DRAGGED, COARSE))
 between, coarse_between = between_of(FORM, ORDER), between_of(FORM, COARSE)
