@@ -16,6 +16,7 @@ from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 LANES = 8
 NARROW = 4    # numbers in a register of a processor without AVX-512
+IN_TURN, IN_HALVES = 'in turn', 'in halves'    # eight lanes there
 ONE_BITS = 1023 << 52    # the bits of the double 1.0
 
 
@@ -55,6 +56,10 @@ class Plain:
     def next(self, v):
         """Return the lanes moved one place down, with 0 in the last."""
         return np.append(v[1:], 0.0)
+
+    def keep(self, v, count):
+        """Return v; of its lanes only the first `count` are asked for from here on."""
+        return v
 
     def first(self, v):
         """Return the number in the first lane."""
@@ -154,11 +159,16 @@ if HAVE_NUMBA:
         def everywhere(self, x):
             """Return a vector of eight times x."""
             absent = ir.Constant(self._vector, ir.Undefined)
-            return self._shuffled(self.with_lane(absent, 0, x), absent, [0] * self.lanes)
+            one = self._builder.insert_element(absent, x, ir.Constant(PLACE, 0))
+            return self._shuffled(one, absent, [0] * self.lanes)
 
         def next(self, v):
             """Return the lanes moved one place down, with 0 in the last."""
-            return self._shuffled(v, self.none(), range(1, self.lanes + 1))
+            return self._shuffled(v, self._each(0.0), range(1, self.lanes + 1))
+
+        def keep(self, v, count):
+            """Return v; of its lanes only the first `count` are asked for from here on."""
+            return v
 
         def first(self, v):
             """Return the number in the first lane."""
@@ -264,15 +274,88 @@ if HAVE_NUMBA:
             return self._builder.shuffle_vector(
                 u, v, ir.Constant(ir.VectorType(PLACE, self.lanes), list(places)))
 
+    class Halves(Written):
+        """The operations on eight numbers as two vectors of four.
 
-    def _in_register(context):
-        """Return how many of eight numbers a register of the processor compiled for holds."""
+        The upper one is None where it is zero, or not asked for: nothing is computed there. That
+        may change the sign of a zero.
+        """
+
+        def __init__(self, builder):
+            super().__init__(builder, NARROW)
+
+        def none(self):
+            """Return eight zeros."""
+            return super().none(), None
+
+        def times(self, a, b):
+            """Return a b."""
+            return self._halves(super().times, a, b)
+
+        def plus(self, a, b):
+            """Return a + b."""
+            return self._halves(super().plus, a, b, absent=lambda a, b: a or b)
+
+        def minus(self, a):
+            """Return -a."""
+            return self._halves(super().minus, a)
+
+        def gather(self, a, b, c):
+            """Return a b + c, rounded once."""
+            return self._halves(super().gather, a, b, c, absent=lambda a, b, c: (
+                super(Halves, self).times(a, b) if a and b else c))
+
+        def everywhere(self, x):
+            """Return a vector of eight times x."""
+            four = super().everywhere(x)
+            return four, four
+
+        def next(self, v):
+            """Return the lanes moved one place down, with 0 in the last."""
+            lower, upper = v
+            if not upper:
+                return super().next(lower), None
+            return self._shuffled(lower, upper, range(1, NARROW + 1)), super().next(upper)
+
+        def keep(self, v, count):
+            """Return v; of its lanes only the first `count` are asked for from here on."""
+            return v if count > NARROW else (v[0], None)
+
+        def first(self, v):
+            """Return the number in the first lane."""
+            return super().first(v[0])
+
+        def with_lane(self, v, lane, x):
+            """Return v with x in one lane."""
+            lower, upper = v
+            if lane < NARROW:
+                return super().with_lane(lower, lane, x), upper
+            return lower, super().with_lane(upper or super().none(), lane - NARROW, x)
+
+        def load(self, array, at):
+            """Return the eight numbers of an array that begin at a place."""
+            return super().load(array, at), super().load(array, at + NARROW)
+
+        @staticmethod
+        def _halves(act, *values, absent=lambda *_: None):
+            """Return what an operation gives of numbers or halves; upper ones may be absent."""
+            if not isinstance(values[0], tuple):
+                return act(*values)
+            lower, upper = zip(*values, strict=True)
+            return act(*lower), act(*upper) if all(upper) else absent(*upper)
+
+
+    def _is_narrow(context):
+        """Return whether a register of the processor compiled for holds four numbers at most."""
         _, _, features = context.codegen().magic_tuple()
-        return LANES if '+avx512f' in features.split(',') else NARROW
+        return '+avx512f' not in features.split(',')
 
 
-def compiled_lanes(recurrence, results, apart=False):
-    """Return a kernel ``(array, numbers) -> tuple`` that runs a recurrence.
+def compiled_lanes(recurrence, results, narrow=None):
+    """Return a kernel ``(array, numbers) -> tuple`` that runs a recurrence on eight lanes.
+
+    Eight numbers in each of many vectors fit into the registers of a processor with AVX-512. Where
+    a register holds four, `narrow` says how it is done.
 
     Parameters
     ----------
@@ -280,10 +363,9 @@ def compiled_lanes(recurrence, results, apart=False):
         It may load from the array and store into it, and returns a list of `results` numbers.
         Each of the numbers is a float, or a tuple of floats that it sees as a list.
     results : int
-    apart : bool
-        No lane takes anything from another, and there are no results. Where a register holds
-        fewer than eight numbers, the lanes take turns: all eight would not fit into the
-        registers.
+    narrow : IN_TURN, IN_HALVES or None
+        Four lanes after the other four, if no lane takes anything from another and there are no
+        results; each vector as two, of which one may be absent; or as if a register held eight.
     """
     if not HAVE_NUMBA:
         return lambda array, numbers: tuple(recurrence(Plain(), array, *numbers))
@@ -298,12 +380,14 @@ def compiled_lanes(recurrence, results, apart=False):
                 cgutils.unpack_tuple(builder, one) if isinstance(kind, types.BaseTuple) else one
                 for kind, one in zip(
                     signature.args[1], cgutils.unpack_tuple(builder, given[1]), strict=True)]
-            if apart:
-                o = Written(builder, _in_register(context))
-                found = o.repeat(0, LANES // o.lanes, [], lambda i, _: recurrence(
+            how = narrow if _is_narrow(context) else None
+            if how == IN_TURN:
+                o = Written(builder, NARROW)
+                found = o.repeat(0, LANES // NARROW, [], lambda i, _: recurrence(
                     o, o.share(address, i), *values))
             else:
-                found = recurrence(Written(builder), address, *values)
+                o = Halves(builder) if how == IN_HALVES else Written(builder)
+                found = recurrence(o, address, *values)
             return context.make_tuple(builder, signature.return_type, found)
         return types.UniTuple(types.float64, results)(array, numbers), write
     return kernel

@@ -12,7 +12,7 @@ from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
-from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
+from rigid_body_sim.compilation.lanes import IN_TURN, LANES, compiled_lanes
 from rigid_body_sim.integrators.marching.batch_lane import (
     BEFORE_Q,
     BEFORE_SERIES,
@@ -320,4 +320,4 @@ def between_of(form, order):
 
 def _kernel(recurrence, form, order):
     return compiled_lanes(partial(recurrence, form=form._replace(order=order)), 0,
-                          apart=len(form.portions) > 1)
+                          narrow=IN_TURN if len(form.portions) > 1 else None)

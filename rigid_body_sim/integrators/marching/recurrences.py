@@ -19,7 +19,7 @@ of the others none needs more than products, which are summed eight orders at on
 taylor_series.py.
 """
 
-from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
+from rigid_body_sim.compilation.lanes import IN_HALVES, LANES, compiled_lanes
 from rigid_body_sim.integrators.marching.taylor_series import ORDER, Products, Series
 
 OWN, REST, GROWTH = 'own', 'rest', 'growth'
@@ -237,7 +237,7 @@ def expansion(plan, rates, width):
             if k + 1 < ORDER:
                 made.advance(k + 1, following)
         return []
-    return compiled_lanes(recurrence, 0)
+    return compiled_lanes(recurrence, 0, narrow=IN_HALVES)
 
 
 def along(size, width):
@@ -255,7 +255,8 @@ def along(size, width):
                 terms = [o.gather(after, power, before)
                          for before, after in zip(terms[::2], terms[1::2], strict=True)]
                 power = o.times(power, power)
-            change = o.times(terms[0], step)
+            # the sign of a coefficient of zero is not the same everywhere (lanes.Halves)
+            change = o.plus(o.times(terms[0], step), o.everywhere(o.number(0.0)))
             for _ in range(LANES):
                 found.append(o.first(change))
                 change = o.next(change)

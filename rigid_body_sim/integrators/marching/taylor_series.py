@@ -18,7 +18,7 @@ sums of the orders k ... k + 7, eight lanes at once: up to order 16 no pair is l
 
 from typing import NamedTuple
 
-from rigid_body_sim.compilation.lanes import LANES, compiled_lanes
+from rigid_body_sim.compilation.lanes import IN_HALVES, LANES, compiled_lanes
 from rigid_body_sim.compilation.layout import Quaternion, Vector, layout
 
 ORDER = 2 * LANES
@@ -82,11 +82,12 @@ class Products:
             return o.number(0.0)
         pairs = [(sign, b.spread[k], a.low[k - 1]) for sign, a, b in self._terms if k] + [
             (sign, a.spread[k], b.low[k]) for sign, a, b in self._terms]
-        sums = [o.next(self._sums)] if k else []
+        # only the lanes of orders that are found are asked for
+        sums = [o.keep(o.next(self._sums), ORDER - k)] if k else []
         for place, (sign, factor, low) in enumerate(pairs):
             factor = self._signed(sign, factor)
             if place < CHAINS and place >= len(sums):
-                sums.append(o.times(factor, low))
+                sums.append(o.keep(o.times(factor, low), ORDER - k))
             else:
                 sums[place % len(sums)] = o.gather(factor, low, sums[place % len(sums)])
         while len(sums) > 1:
@@ -208,7 +209,7 @@ def expansion(pushed, coupled, dragged, hinged):
             for place, one in unknowns:
                 o.store(one.coefficients[k + 1], S, LANES * (k + 1) + place)
         return []
-    return compiled_lanes(recurrence, 0)
+    return compiled_lanes(recurrence, 0, narrow=IN_HALVES)
 
 
 def _along(o, S, h):
@@ -224,7 +225,8 @@ def _along(o, S, h):
             for before, after in zip(terms[::2], terms[1::2], strict=True)
         ]
         power = o.times(power, power)
-    change = o.times(terms[0], step)
+    # the sign of a coefficient of zero is not the same everywhere (lanes.Halves)
+    change = o.plus(o.times(terms[0], step), o.everywhere(o.number(0.0)))
     found = []
     for _ in range(UNKNOWNS):
         found.append(o.first(change))
