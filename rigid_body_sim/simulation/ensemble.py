@@ -30,6 +30,13 @@ SHARE = 0.8
 UNLOOKED = 2**26
 """Bytes of a result up to which the free memory is not checked."""
 DOUBLE = 8    # bytes
+MANY = 256
+"""Bodies from which on `auto` asks a sample of them which tolerance they need."""
+SAMPLED = 8
+SPENT = 0.5
+"""Share of the accuracy that the worst body of the sample may err by by a finer tolerance."""
+LOOKS = 3
+"""How often the tolerance is looked at."""
 
 
 class Ensemble(Sequence):
@@ -49,8 +56,8 @@ class Ensemble(Sequence):
         The events of each body, if they were asked for; their ticks are None.
     choices : list of (Choice, array of int)
         Each method that was chosen, and the numbers of its bodies; empty for a part of an
-        Ensemble. `auto` chooses for the start of the scene, whatever the starts of the bodies are:
-        :meth:`expected_errors` tells what that means for each of them.
+        Ensemble. `auto` chooses for the start of the scene; for 256 bodies and more it also looks
+        at the quickest one and seven others. :meth:`expected_errors` tells of each of them.
     """
 
     __slots__ = ('_asked', 'choices', 'columns', 'events', 'vector')
@@ -84,11 +91,11 @@ class Ensemble(Sequence):
         """Return the error of the attitude to expect of each body, rad, shape (bodies,).
 
         It is the largest at the times that were asked for. `auto` takes the tolerance that the
-        scene's own start needs: a body whose motion magnifies errors more may err by more than the
-        accuracy, and shows it here. Bodies run again with a finer tolerance, which takes a little
-        longer than the ensemble did, and those that differ by less than that one with the finest;
-        the error of a closed form is half an ulp of the angle turned, without a run. The starts
-        and the states must still be what they were.
+        scene's own start needs, or the worst of a few bodies: one whose motion magnifies errors
+        more may err by more than the accuracy, and shows it here. Bodies run again with a finer
+        tolerance, which takes a little longer than the ensemble did, and those that differ by
+        less than that one with the finest; the error of a closed form is half an ulp of the angle
+        turned, without a run. The starts and the states must still be what they were.
 
         Raises
         ------
@@ -196,7 +203,7 @@ def ensemble(scene, starts=None, times=(0.0,), integrator: str | Choice = 'auto'
     names = _columns(columns)
     shape = (len(starts), len(times), sum(map(_width, names)))
     out = _result(shape, out, memory)
-    groups = _groups(scenes, starts, integrator, accuracy, horizon)
+    groups = _groups(scenes, starts, times, integrator, accuracy, horizon)
     # even a hidden bar takes as long as the states of a hundred bodies
     bar = tqdm(total=len(starts), unit=' bodies', leave=False) if progress else None
     report = _silent if bar is None else bar.update
@@ -278,7 +285,7 @@ def _alike(scenes, starts):
     return [(scene, np.array(bodies)) for scene, bodies in places.values()]
 
 
-def _groups(scenes, starts, integrator, accuracy, horizon):
+def _groups(scenes, starts, times, integrator, accuracy, horizon):
     """Return (Choice, its bodies): one for all bodies, or one for each whose scene differs.
 
     The closed form of a scene nearly this one errs by what the start makes of the difference: a
@@ -292,12 +299,41 @@ def _groups(scenes, starts, integrator, accuracy, horizon):
         choice = choose(scene, integrator, accuracy, horizon=horizon,
                         together=len(bodies) >= LANES)
         if not choice.is_nearly:
+            if choice.settled and len(bodies) >= MANY:
+                choice = _for_all(choice, starts[bodies], times)
             groups.append((choice, bodies))
             continue
         for k, body in enumerate(bodies.tolist()):
             own = replace(scene, initial=State(starts[body].copy()))
             groups.append((choose(own, integrator, accuracy, horizon=horizon), bodies[k:k + 1]))
     return groups
+
+
+def _for_all(choice, starts, times):
+    """Return a Choice of the method with a tolerance that suits a sample of bodies at the end.
+
+    The sample is the quickest body and some at even distances. A finer run tells their errors,
+    which grow about in proportion to the tolerance: a finer one is looked at again. A body that
+    fails is left to the run itself, which tells its number.
+    """
+    if choice.method == 'exact' or not len(times):
+        return choice
+    rates = np.linalg.norm(starts[:, PLACES['angular_velocity']], axis=1)
+    others = np.linspace(0, len(starts) - 1, SAMPLED - 1).astype(int)
+    sample, end = starts[[rates.argmax(), *others]], times[[times.argmax()]]
+    found = Ensemble(np.empty((SAMPLED, 1, STATE_SIZE)), asked=(sample, end))
+    for _ in range(LOOKS):
+        if choice.tolerance <= FINEST:
+            break
+        try:
+            _fill(choice, sample, end, found.columns, found.vector, _silent)
+            worst = float(found._apart(choice.finer(), np.arange(SAMPLED)).max())
+        except NotConverged:
+            break
+        if worst <= choice.accuracy:
+            break
+        choice = choice.finer(SPENT * choice.accuracy / worst)
+    return choice
 
 
 def _columns(columns):
