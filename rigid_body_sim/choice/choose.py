@@ -199,9 +199,26 @@ class Choice:
         if finer == self.tolerance:
             raise BadInput('accuracy', f'takes a tolerance of {self.tolerance!r}',
                            'a coarser one: no finer run tells its error')
+        return self._at(finer)
+
+    def suited(self, tolerance, error):
+        """Return the Choice that `auto` makes where bodies need another tolerance than the scene.
+
+        Parameters
+        ----------
+        tolerance : float
+        error : float
+            The one to expect, rad.
+        """
+        met_until = self.horizon if error <= self.accuracy else None
+        return replace(self._at(max(FINEST, tolerance)), settled=settling.Settled(
+            self.method, max(FINEST, tolerance), error, met_until))
+
+    def _at(self, tolerance):
+        """Return a Choice of the method with another tolerance."""
         # in closed form the tolerance is that of the method that goes on where the form ends
-        stepped = {} if self.method == 'exact' else {'_prototype': self._prototype.at(finer)}
-        return replace(self, tolerance=finer, **stepped)
+        stepped = {} if self.method == 'exact' else {'_prototype': self._prototype.at(tolerance)}
+        return replace(self, tolerance=tolerance, **stepped)
 
     def _holds(self, start):
         """Return whether the prototype goes on from a state."""

@@ -31,10 +31,10 @@ UNLOOKED = 2**26
 """Bytes of a result up to which the free memory is not checked."""
 DOUBLE = 8    # bytes
 MANY = 256
-"""Bodies from which on `auto` asks a sample of them which tolerance they need."""
+"""Bodies from which on `auto` takes a finer tolerance if a sample of them needs it."""
 SAMPLED = 8
-SPENT = 0.5
-"""Share of the accuracy that the worst body of the sample may err by by a finer tolerance."""
+SPENT = 0.3
+"""Share of the accuracy that the worst body of the sample may err by with a finer tolerance."""
 LOOKS = 3
 """How often the tolerance is looked at."""
 
@@ -56,8 +56,9 @@ class Ensemble(Sequence):
         The events of each body, if they were asked for; their ticks are None.
     choices : list of (Choice, array of int)
         Each method that was chosen, and the numbers of its bodies; empty for a part of an
-        Ensemble. `auto` chooses for the start of the scene; for 256 bodies and more it also looks
-        at the quickest one and seven others. :meth:`expected_errors` tells of each of them.
+        Ensemble. `auto` chooses for the start of the scene; for 256 bodies and more it takes a
+        finer tolerance if the quickest one or one of seven others needs it.
+        :meth:`expected_errors` tells of each of them.
     """
 
     __slots__ = ('_asked', 'choices', 'columns', 'events', 'vector')
@@ -310,7 +311,7 @@ def _groups(scenes, starts, times, integrator, accuracy, horizon):
 
 
 def _for_all(choice, starts, times):
-    """Return a Choice of the method with a tolerance that suits a sample of bodies at the end.
+    """Return a Choice of the method with the tolerance that a sample of bodies needs at the end.
 
     The sample is the quickest body and some at even distances. A finer run tells their errors,
     which grow about in proportion to the tolerance: a finer one is looked at again. A body that
@@ -322,18 +323,20 @@ def _for_all(choice, starts, times):
     others = np.linspace(0, len(starts) - 1, SAMPLED - 1).astype(int)
     sample, end = starts[[rates.argmax(), *others]], times[[times.argmax()]]
     found = Ensemble(np.empty((SAMPLED, 1, STATE_SIZE)), asked=(sample, end))
+    suited = choice
     for _ in range(LOOKS):
-        if choice.tolerance <= FINEST:
+        if suited.tolerance <= FINEST:
             break
         try:
-            _fill(choice, sample, end, found.columns, found.vector, _silent)
-            worst = float(found._apart(choice.finer(), np.arange(SAMPLED)).max())
+            _fill(suited, sample, end, found.columns, found.vector, _silent)
+            worst = float(found._apart(suited.finer(), np.arange(SAMPLED)).max())
         except NotConverged:
-            break
+            return choice
         if worst <= choice.accuracy:
             break
-        choice = choice.finer(SPENT * choice.accuracy / worst)
-    return choice
+        share = SPENT * choice.accuracy / worst
+        suited = suited.suited(share * suited.tolerance, share * worst)
+    return suited
 
 
 def _columns(columns):

@@ -289,6 +289,18 @@ def test_the_tolerance_of_many_bodies_is_what_the_worst_of_some_needs(monkeypatc
     assert (together < 5e-10).all()
     assert by_scene.tolerance > for_all.tolerance
     assert (by_scene.accuracy, by_scene.method) == (for_all.accuracy, for_all.method)
+    assert for_all.settled.tolerance == for_all.tolerance
+    assert for_all.expected_error == pytest.approx(3e-10, rel=1e-6)    # share of SPENT
+    assert for_all.missed is None
+
+
+@IN_KERNELS
+def test_a_body_of_the_sample_that_fails_is_named_by_its_place_among_all(monkeypatch):
+    scene, starts = _one_of_eight_is_unstable()
+    starts[5, 5:8] *= 1e12
+    monkeypatch.setattr(module, 'MANY', 8)
+    with pytest.raises(NotConverged, match=r'^body 5: taylor on driven_in_the_world'):
+        ensemble(scene, starts, [1e3], accuracy=1e-9, horizon=10.0)
 
 
 @IN_KERNELS
