@@ -278,7 +278,8 @@ if HAVE_NUMBA:
         """The operations on eight numbers as two vectors of four.
 
         The upper one is None where it is zero, or not asked for: nothing is computed there. That
-        may change the sign of a zero.
+        may change the sign of a zero. Quotients, roots, comparisons, loops and whole vectors
+        written are not there.
         """
 
         def __init__(self, builder):
