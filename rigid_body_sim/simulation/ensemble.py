@@ -30,7 +30,7 @@ SHARE = 0.8
 UNLOOKED = 2**26
 """Bytes of a result up to which the free memory is not checked."""
 DOUBLE = 8    # bytes
-MANY = 256
+MANY = 1024
 """Bodies from which on `auto` takes a finer tolerance if a sample of them needs it."""
 SAMPLED = 8
 SPENT = 0.3
@@ -56,7 +56,7 @@ class Ensemble(Sequence):
         The events of each body, if they were asked for; their ticks are None.
     choices : list of (Choice, array of int)
         Each method that was chosen, and the numbers of its bodies; empty for a part of an
-        Ensemble. `auto` chooses for the start of the scene; for 256 bodies and more it takes a
+        Ensemble. `auto` chooses for the start of the scene; for 1024 bodies and more it takes a
         finer tolerance if the quickest one or one of seven others needs it.
         :meth:`expected_errors` tells of each of them.
     """
