@@ -317,3 +317,11 @@ def test_steps_are_shares_of_a_radian_at_the_fastest_rate(racket):
     counts = [problem.duration / step for step in runner.steps_for(problem, quick)]
     assert counts == near([32 * round(problem.duration * 5e3 * share / 32)
                            for share in runner.STEPS_OF_A_RADIAN], rel=1e-12)
+    # one that swings: about as fast as a pendulum of its length does, sqrt(M g r/I) = 2 rad/s
+    held = parse_scene('scene: a\nbody: {mass: 1, inertia: [3, 3, 4], center_of_mass: '
+                       '[0, 0, -1]}\nconstraint: pivot\neffects: [gravity: {g: 16}]\n'
+                       'initial: {angular_velocity: [0, 0, 5]}\n')
+    slow = dataclasses.replace(truth, omega=omega / 1e4)
+    swinging = dataclasses.replace(problem, scene=held, duration=64.0)
+    counts = [64.0 / step for step in runner.steps_for(swinging, slow)]
+    assert counts == near([32 * 14 * 2 ** k for k in range(-1, 16)], rel=1e-12)
