@@ -84,11 +84,17 @@ def test_a_body_that_flies_freely_feels_no_force_though_its_origin_is_carried_ro
     assert not found.force.any() and not found.torque.any()
 
 
+BRAKED = ('scene: s\nbody: {mass: 3.0, inertia: [1.0, 1.5, 2.0]}\nconstraint: free\n'
+          "effects: [force: {value: ['-0.1*vx', 0, 0]}]\ninitial: {}\n")
+
+
 @pytest.mark.parametrize(('scene', 'needed'), [
     ('tennis_racket', False), ('heavy_top', False), ('kater_pendulum', False),
-    ('billiard_low', True), ('tossed_coin', True)])
+    ('billiard_low', True), ('tossed_coin', True), (parse_scene(BRAKED), True)],
+    ids=lambda one: getattr(one, 'name', None))
 def test_a_source_without_velocities_knows_whose_forces_need_them(scene, needed):
-    assert Mechanics(load_scene(scene)).need_velocity() is needed
+    scene = load_scene(scene) if isinstance(scene, str) else scene
+    assert Mechanics(scene).need_velocity() is needed
 
 
 class Gui:
