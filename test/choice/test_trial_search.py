@@ -132,6 +132,50 @@ def test_an_error_that_may_be_rounding_ends_the_search(tried, monkeypatch):
     assert [tried.tolerance_from(HERE)] == asked
 
 
+@pytest.mark.parametrize(('errors', 'patience', 'taken'), [
+    # the error of each run, rad; where a finer one takes too much work, what works is taken
+    ([0.05e-11, None], 1, 0), ([1e-8, None], 16, 0), ([0.5, None], 1, 0),
+    ([1e-8, None], 1, None), ([None], 16, None),
+    # what was seen last is kept where nothing tells the error of a finer run
+    (['unknown'], 1, 0), ([1e-8, 'unknown'], 1, 0)])
+def test_a_search_that_takes_too_much_work_ends(errors, patience, taken, tried, monkeypatch):
+    asked = []
+
+    def error(tolerance):
+        asked.append(tolerance)
+        found = errors[len(asked) - 1]
+        if found is None:
+            raise TooMuchWork('too many steps')
+        return None if found == 'unknown' else found
+    tried._patience = patience
+    monkeypatch.setattr(tried, '_error', error)
+    monkeypatch.setattr(tried, '_rounding', lambda one: 0.0)
+    if taken is None:
+        with pytest.raises(TooMuchWork):
+            tried.tolerance_from(HERE)
+    else:
+        assert tried.tolerance_from(HERE) == asked[taken]
+    assert len(asked) == len(errors)
+    # with more patience the coarsest one is the first
+    assert (asked[0] == 2.0 ** -10) == (patience > 1)
+
+
+@pytest.mark.parametrize('ran', [False, True])
+def test_where_all_that_was_tried_is_bad_the_finest_that_ran_is_taken(ran, tried, monkeypatch):
+    """The next one may have run beside one that was tried, to tell its error."""
+    tried._finest, asked = 2.0 ** -100, []
+
+    def error(tolerance):
+        asked.append(tolerance)
+        return 0.2 * (tolerance / asked[0]) ** 0.4
+    monkeypatch.setattr(tried, '_error', error)
+    monkeypatch.setattr(tried, '_rounding', lambda one: 0.0)
+    tried._runs = {2.0 ** -k: None for k in range(101)} if ran else {}
+    found = tried.tolerance_from(HERE)
+    assert len(asked) == trial.TRIES and asked == sorted(asked, reverse=True)
+    assert found < min(asked) if ran else found == min(asked)
+
+
 @pytest.mark.parametrize(('radians', 'promised', 'flies', 'slim', 'tried_at_all'), [
     (3.0, 1e-11, False, False, False), (3.1, 1e-11, False, False, True),
     (3.0, 1.1e-11, False, False, True), (3.0, 1e-11, True, False, True),
