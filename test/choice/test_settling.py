@@ -76,6 +76,21 @@ def test_a_method_that_is_doubted_is_tried_where_the_others_miss(case, monkeypat
     assert (found.method, found.tolerance) == (taken, 2.0 ** -47)
 
 
+@pytest.mark.parametrize(('least', 'taken'), [(1.25e-14, 'gauss16'), (1.26e-14, 'dop8')])
+def test_another_method_is_tried_where_its_least_error_is_as_small(least, taken, monkeypatch):
+    """It is up to a quarter larger in the table."""
+    told = {'dop8': 8e-11, 'gauss16': 2e-11}
+    scene = parse_scene(SLOW.replace('EFFECTS', SMOOTH_ROOT))
+    monkeypatch.setattr(
+        measured, 'least_error', lambda _, name: {'dop8': 1e-14, 'gauss16': least}[name])
+    monkeypatch.setattr(Trial, 'take', lambda self, tolerance: tolerance)
+    monkeypatch.setattr(Trial, 'misses', lambda *_: True)
+    monkeypatch.setattr(Trial, 'beside', lambda *_: 0.0)
+    monkeypatch.setattr(Trial, 'forecast', lambda self, _: forecast.Forecast(
+        told[self.prototype.method.NAME], 6.0))
+    assert settling.settle(scene, list(told), 1e-11, 6.0).method == taken
+
+
 @pytest.mark.without_numba
 @IN_SOAK    # a minute, of which the kernels take most
 def test_where_one_method_rounds_by_more_than_is_asked_another_one_does_not():
