@@ -274,3 +274,51 @@ def test_errors_that_a_run_allows_itself_count_from_then_on(monkeypatch):
             assert found.error == 1e-7
             assert found.met_until == one._times[runs.LOOKS // 2 - 1]
     assert comparison.apart(one._states(HERE), one._states(finer)).max() < 1e-8
+
+
+@pytest.mark.parametrize(('error', 'lost', 'longer', 'told', 'around'), [
+    # up to 1024 times what rounding does an error may be rounding: the mean of finer runs tells
+    (1000e-12, 1e-12, 1.0, 500e-12, True), (1050e-12, 1e-12, 1.0, 1050e-12, False),
+    (1e-9, 2e-9, 1.0, 2e-9, True),
+    # either grows in proportion to time
+    (1050e-12, 1e-12, 3.0, 3150e-12, False), (1e-9, 2e-9, 3.0, 6e-9, True),
+    # what is magnified to 1e-5 shows in the errors themselves: rounding is not asked
+    (0.9e-5, 1e-3, 1.0, 1e-3, True), (1e-5, 1e-3, 1.0, 1e-5, False),
+    (math.inf, 1e-3, 1.0, 1e-12, False)])    # told by the table
+def test_the_larger_of_error_and_rounding_is_told(error, lost, longer, told, around, tried,
+                                                  monkeypatch):
+    """The largest of all looks counts."""
+    tried._scene, tried._longer, asked = coasting_scene(), longer, []
+    growing = np.linspace(0.5, 1.0, runs.LOOKS)
+    monkeypatch.setattr(tried, '_reference', lambda _: HERE / 128.0)
+    monkeypatch.setattr(tried, '_below', lambda *_: HERE / 128.0)
+    monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
+    monkeypatch.setattr(tried, '_errors', lambda *_: error * np.ones(runs.LOOKS))
+    monkeypatch.setattr(tried, '_around', lambda *_: asked.append(None) or 'finer')
+    monkeypatch.setattr(tried, '_beside_one_begun_later', lambda *_: np.zeros(runs.LOOKS))
+    monkeypatch.setattr(trial.rounding, 'lost', lambda *_: lost * growing)
+    monkeypatch.setattr(trial.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
+    monkeypatch.setattr(
+        trial.comparison, 'apart_from_mean', lambda *_: 0.5 * error * growing[::-1])
+    found = tried.forecast(HERE)
+    assert found.error == near(told, rel=1e-12)
+    assert bool(asked) == around
+
+
+def test_where_rounding_is_small_the_angle_turned_tells_what_the_start_does(tried, monkeypatch):
+    tried._scene, tried._longer = coasting_scene(), 3.0
+    monkeypatch.setattr(tried, '_reference', lambda _: HERE / 128.0)
+    monkeypatch.setattr(tried, '_below', lambda *_: HERE / 128.0)
+    monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
+    monkeypatch.setattr(tried, '_errors', lambda *_: 1e-9 * np.ones(runs.LOOKS))
+    monkeypatch.setattr(trial.rounding, 'lost', lambda *_: 1e-15 * np.ones(runs.LOOKS))
+    monkeypatch.setattr(
+        trial.rounding, 'of_angle_turned', lambda *_: 5e-9 * np.ones(runs.LOOKS))
+    assert tried.forecast(HERE).error == near(15e-9, rel=1e-12)
+
+
+def test_how_far_two_trials_are_apart_at_the_horizon(tried):
+    other = made()
+    tried._scene, tried._longer = coasting_scene(), 3.0
+    tried._runs, other._runs = {HERE: at(0.0)}, {HERE / 2.0: at(1e-9)}
+    assert tried.beside(HERE, other, HERE / 2.0) == near(3e-9, rel=1e-6)
