@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A live source without its process: what it takes from the pipe, and its first pace."""
 
+import contextlib
 import time
+import types
 
 import pytest
 
 from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.view import live as module
+from rigid_body_sim.view import runner
 from rigid_body_sim.view.live import Live, pace_for
 from rigid_body_sim.view.runner import About
 
@@ -37,6 +41,25 @@ def live():
     one.messages, one.expected = [], {}
     one._asked, one._next, one._doing, one._pipe = None, None, '', Pipe()
     return one
+
+
+def test_a_scene_begins_in_a_process_at_its_pace(monkeypatch):
+    """Commands act at ticks; the body can be pushed, edited and paced, and is not a recording."""
+    pipe, made, done = Pipe(), [], []
+    process = types.SimpleNamespace(start=lambda: done.append('started'))
+    context = types.SimpleNamespace(
+        Pipe=lambda: (pipe, types.SimpleNamespace(close=lambda: done.append('closed'))),
+        Process=lambda **settings: made.append(settings) or process)
+    monkeypatch.setattr(module.multiprocessing, 'get_context', lambda kind: context)
+    monkeypatch.setattr(module, 'deaf_children', contextlib.nullcontext)
+    scene = load_scene('tennis_racket', ['initial.angular_velocity=[0, 2e-4, 0]'])
+    one = Live(scene.text, {'rate': 500.0}, 'runs')
+    assert (one.tick, one.speed, one.generation) == (0.002, 1e4, 0)
+    assert (one.pushes, one.edits, one.paces, one.plays) == (True, True, True, False)
+    assert pipe.told == [('scene', scene.text), ('speed', 1e4)]
+    assert done == ['started', 'closed']
+    [settings] = made
+    assert settings['target'] is runner.serve and settings['args'][1:] == ({'rate': 500.0}, 'runs')
 
 
 def test_of_scenes_asked_for_meanwhile_the_last_one_follows(live):

@@ -123,6 +123,32 @@ def test_what_is_typed_is_taken_when_nobody_has_typed_for_a_while(made, monkeypa
     assert one.edited() is None    # once
 
 
+@pytest.mark.parametrize(('method', 'shown'), [('dop8', ', dop8<'), ('', ', not yet moving<')])
+def test_the_title_tells_scene_method_and_ground(method, shown, made):
+    one, controls = made(method=method)
+    one.take(moment(1.0, ((1.0, 'flip'),)))
+    one._shown['follow'] = True
+    one.begin(load_scene('heavy_top'), 'a <top>', 0.25)
+    text = one._title.content
+    assert f'<b>heavy top</b>{shown}' in text
+    assert 'Drawn: a &lt;top&gt;; the ground has a line every 0.25 m.' in text
+    assert controls['follow the body'].value
+    assert one._events == []    # those of the scene before
+
+
+def test_presets_look_from_where_they_say():
+    """A scene has x to the right of its front, and z upwards."""
+    (x, y, z), (fx, fy, fz), (sx, sy, sz), (tx, ty, tz) = (
+        panel.PRESETS[name] for name in ('3/4', 'front', 'side', 'top'))
+    assert x > 0.0 > y and z > 0.0
+    assert fx == 0.0 and fy < 0.0 < fz < -0.1 * fy
+    assert sy == 0.0 and 0.0 < sz < 0.1 * sx
+    # straight from above a camera has no upward direction: it is a little in front
+    assert tx == 0.0 and 0.0 < -ty < 0.01 * tz
+    sizes = [np.linalg.norm(place) for place in panel.PRESETS.values()]
+    assert max(sizes) < 1.2 * min(sizes)    # and from about as far
+
+
 def moment(time, events=()):
     return Snapshot(time, np.zeros(14), np.zeros((1, 14)), Wrench(), 2.5, 0.0, 0.0, events)
 
