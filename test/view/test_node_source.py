@@ -154,3 +154,23 @@ def test_services_that_are_missing_or_refuse_are_said(source):
     assert source.messages == ['step: it is running', '/a/sim has no service reset']
     assert (source.pushes, source.edits, source.plays, source.paces) == (True, False, False, False)
     assert (source.speed, source.tick) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize(('published', 'used'), [
+    ({'angular_velocity', 'energy', 'pose'}, 'shown'), ({'pose'}, 'ticks'), (set(), 'ticks')])
+def test_topics_for_pages_are_used_where_all_of_them_come_within_a_second(
+        published, used, source, monkeypatch):
+    """A replay has none; the topics of every tick are used then."""
+    clock, subscribed = [7.0], {}
+    monkeypatch.setattr(node_source, 'time', types.SimpleNamespace(
+        monotonic=lambda: clock[0], sleep=lambda s: clock.__setitem__(0, clock[0] + s)))
+    shown = {node_source.display.topic_of(name).replace('~', '/a/sim'): name
+             for name in node_source.STATES}
+    source._node = types.SimpleNamespace(count_publishers=lambda topic: shown[topic] in published)
+    monkeypatch.setattr(source, '_subscribe', lambda name, kind, topic, profile: (
+        subscribed.__setitem__(name, topic)))
+    source._subscribe_to_states('/a')
+    names = {name: f'/a/{name}' for name in node_source.STATES}
+    assert subscribed == ({name: topic for topic, name in shown.items()} if used == 'shown'
+                          else names)
+    assert clock[0] == pytest.approx(7.0 if used == 'shown' else 8.0, abs=0.051)
