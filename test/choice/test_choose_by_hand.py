@@ -85,3 +85,35 @@ def test_the_same_choice_is_given_for_the_same_scene_start_and_settings():
                    for vector in (scene.initial.vector, start))
     assert hash(same) == hash(moved) and same != moved
     assert same == module._Same(scene, np.copy(scene.initial.vector).tobytes())
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('effects', 'method', 'ends'), [
+    ('drag: {angular: 0.02}, STRIKE', 'exact', True), ('drag: {angular: 0.02}', 'exact', False),
+    ('STRIKE', 'exact', False), ('drag: {angular: 0.02}, STRIKE', 'dop8', False)])
+def test_a_strike_may_end_a_closed_form_that_not_every_start_has(effects, method, ends):
+    """Drag slows a spin about the axis of symmetry in closed form, and no other rotation."""
+    strike = 'strike: {impulse: [1, 0, 0], point: [0, 0.3, 0.4], time: 0.5}'
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [0.2, 0.2, 0.1]}\nconstraint: free\n'
+                        f'effects: [{effects.replace("STRIKE", strike)}]\ninitial: {{spin: 9.0}}')
+    assert choose(scene, method, 1e-6).ends == ends
+
+
+@pytest.mark.parametrize(('coefficient', 'stiff'), [(19.8, set()), (20.2, {'dissipation'})])
+def test_dissipation_is_stiff_from_ten_times_the_rate_of_the_body_on(coefficient, stiff):
+    """Of a body of equal moments it is c L/I over L/I^2, here c/2."""
+    scene = parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 1, 1]}\nconstraint: free\n'
+                        f'effects: [internal_dissipation: {{coefficient: {coefficient}}}]\n'
+                        'initial: {angular_velocity: [0.5, 0, 0]}\n')
+    assert module._stiff(scene) == stiff
+
+
+def test_the_rounding_beside_the_error_of_a_scene_nearly_this_one_counts_what_a_torque_adds(
+        monkeypatch):
+    """Half an ulp of 4, and of the angle 3 t + t^2/4: 2 N m act on moments of 4 kg m^2."""
+    scene = coasting_scene(effects=('torque: {value: [0, 0, 2], frame: body}',))
+    monkeypatch.setattr(module, 'absorbing_motion', lambda scene: None)
+    monkeypatch.setattr(module, 'nearly_absorbing', lambda *_: ('a motion', 'a scene', 1e-12))
+    found = module._closed_form(scene, 8.0)
+    assert (found.motion, found.scene, found.error) == ('a motion', 'a scene', 1e-12)
+    assert found.floor == near(2.0 ** -53 * (4.0 + 24.0 + 16.0), rel=1e-15)

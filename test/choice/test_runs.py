@@ -66,3 +66,10 @@ def test_a_strike_at_the_last_look_counts():
     one = coasting_scene((4.0, 8.0))
     states = runs.run(one, Coasting(), one.initial.vector, TIMES)
     assert states[:, 7] == pytest.approx([3.0, 3.0, 3.0, 1.0])
+
+
+def test_a_strike_before_the_first_look_acts_at_its_time():
+    one = coasting_scene((0.25, 8.0))
+    states = runs.run(one, Coasting(), one.initial.vector, TIMES)
+    angles = Rotation.from_quat(states[:2, 1:5]).as_rotvec()[:, 2]
+    assert angles == pytest.approx([3.0 * 0.25 + 0.75, 3.0 * 0.25 + 1.75])

@@ -177,6 +177,17 @@ def test_controls_are_requests_to_the_source(ball):
     assert 'nowhere' in one.panel._problem.content
 
 
+def test_the_page_turns_dark_and_never_offers_to_be_shared(ball, monkeypatch):
+    one, _, _ = ball
+    themes = []
+    monkeypatch.setattr(one.server.gui, 'configure_theme', lambda **theme: themes.append(theme))
+    for dark in (True, False):
+        one.panel.requests.put(('dark', dark))
+        one.turn()
+    assert [theme['dark_mode'] for theme in themes] == [True, False]
+    assert not any(theme['show_share_button'] or theme['show_logo'] for theme in themes)
+
+
 def test_the_motion_waits_for_the_first_client_only(ball, monkeypatch):
     one, source, _ = ball
     aimed = []
