@@ -96,7 +96,10 @@ def test_a_strike_may_end_a_closed_form_that_not_every_start_has(effects, method
     strike = 'strike: {impulse: [1, 0, 0], point: [0, 0.3, 0.4], time: 0.5}'
     scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [0.2, 0.2, 0.1]}\nconstraint: free\n'
                         f'effects: [{effects.replace("STRIKE", strike)}]\ninitial: {{spin: 9.0}}')
-    assert choose(scene, method, 1e-6).ends == ends
+    found = choose(scene, method, 1e-6)
+    assert found.ends == ends
+    # with or without a strike another start may not have the form
+    assert found.rests_on_start == ('drag' in effects and method == 'exact')
 
 
 @pytest.mark.parametrize(('coefficient', 'stiff'), [(19.8, set()), (20.2, {'dissipation'})])
