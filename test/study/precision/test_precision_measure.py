@@ -389,3 +389,16 @@ def test_a_sweep_ends_after_the_first_setting_beyond_its_limit(limit, swept, clo
         problem, truth, runner.Runner('a', 'step', (1, 2, 3), make), limit, balance, [])]
     assert len(found) == swept
     assert [(point['set_up'], point['first_run']) for point in found] == [(2.5, 0.25)] * swept
+
+
+@pytest.mark.without_numba
+def test_what_acts_without_striking_is_run_by_its_solver_alone(monkeypatch):
+    monkeypatch.setattr(runner, 'Simulation', None)    # it has ticks, a ledger and events
+    problem = suite.problem('heavy_symmetric_top')
+    exact = next(iter(runner.ours(problem, reference.load(problem))))
+    run = exact.make(None)
+    expected = Simulation(problem.scene).states([0.5, 2.0]).vector[:, 1:8]
+    run.start()
+    for time, state in zip([0.5, 2.0], expected, strict=True):
+        run.to(time)
+        assert (exact.name, run.state().tolist()) == ('exact', state.tolist())
