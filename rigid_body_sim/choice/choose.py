@@ -193,7 +193,7 @@ class Choice:
         """
         if self.method == 'exact' and not self._asks:
             return None
-        if self.tolerance is None:
+        if self.step is not None:
             raise BadInput('step', f'got {self.step!r}', 'an accuracy: fixed steps are not tried')
         finer = max(FINEST, share * self.tolerance)
         if finer == self.tolerance:

@@ -86,5 +86,5 @@ def view(what, duration=10.0):
 def _recorded(what, duration, count):
     times, vectors, _, source = states_of(what)
     wanted = np.linspace(0.0, min(duration, float(times[-1])), count)
-    places = np.searchsorted(times, wanted).clip(0, len(times) - 1)
+    places = np.searchsorted(times, wanted)
     return times[places], vectors[places], source.scene

@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The error that is expected of closed forms."""
 
+import types
+
 import numpy as np
 import pytest
+from choice.known_bodies import Coasting, coasting_scene
+from near import near
+from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.choice import exact_forecast, runs
 from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
@@ -70,3 +77,49 @@ def test_the_expected_error_knows_how_far_the_motion_magnifies_rounding():
     # a racket on its stable axis magnifies nothing
     calm = parse_scene(scene.text, {'initial.angular_velocity': [5, 1e-4, 1e-4]})
     assert choose(calm, horizon=horizon).expected_error < 2e-14
+
+
+class Closed(Coasting):
+    """A closed form that holds before the strike, or for ever."""
+
+    def __init__(self, ends):
+        super().__init__()
+        self.motion = types.SimpleNamespace(takes=self.takes if ends else None)
+
+    def takes(self, vector):
+        return vector[0] == 0.0
+
+
+class Off(Coasting):
+    """Goes on with an error, rad."""
+
+    def __init__(self, error):
+        super().__init__()
+        self._error = error
+
+    def start(self, vector):
+        turned = vector.copy()
+        turn = Rotation.from_rotvec([0.0, 0.0, self._error])
+        turned[1:5] = (Rotation.from_quat(vector[1:5]) * turn).as_quat()
+        return super().start(turned)
+
+
+@pytest.mark.parametrize(('own', 'accuracy', 'error'), [
+    (0.0, 1e-5, 1e-5 * 127 / 128 + 1e-9), (5e-6, 1e-5, 1.5e-5 - 1e-5 / 128 + 1e-9),
+    (0.0, 64.0 * FINEST, 63.0 * FINEST + 1e-9)])
+def test_errors_of_what_goes_on_of_rounding_and_of_a_scene_nearly_this_one_add_up(
+        own, accuracy, error, monkeypatch):
+    monkeypatch.setattr(exact_forecast, 'lost', lambda *_: 1e-9 * np.ones(runs.LOOKS))
+    asked, scene = [], coasting_scene((1.0, 8.0))
+    found = exact_forecast.of_exact(scene, Closed(True), own, accuracy, 4.0,
+                                    lambda one: asked.append(one) or Off(one))
+    assert asked == [max(FINEST, accuracy / 128.0), accuracy]
+    assert found.error == near(error, rel=1e-6)
+
+
+def test_without_a_strike_that_ends_it_a_closed_form_errs_by_rounding_and_by_its_own(monkeypatch):
+    monkeypatch.setattr(exact_forecast, 'lost', lambda *_: 1e-9 * np.ones(runs.LOOKS))
+    for scene, form in ((coasting_scene(), Closed(True)), (coasting_scene((1.0, 8.0)),
+                                                           Closed(False))):
+        found = exact_forecast.of_exact(scene, form, 4e-9, 3.05e-9, 4.0, pytest.fail)
+        assert found == near((5e-9, 2.0), rel=1e-12)    # 1e-9 + 4e-9 t/4 is met

@@ -50,3 +50,26 @@ def test_what_does_not_converge_is_not_a_number_and_too_much_work_is_said():
     assert np.isnan(found).all()
     with pytest.raises(TooMuchWork):
         runs.run(still, Coasting(2.5, TooMuchWork), still.initial.vector, TIMES)
+
+
+def test_what_each_solver_allows_itself_is_noted_up_to_where_it_ends(monkeypatch):
+    one, noted = coasting_scene((2.5, -4.0), (1.0, 8.0), (3.0, 1.0)), []
+    # the one that begins at 2.5 s allows itself nothing
+    monkeypatch.setattr(Coasting, 'allowance', lambda self, until: None if self.vector[0] == 2.5
+                        else (1e-9 * until, float(self.vector[0])))
+    runs.run(one, Coasting(), one.initial.vector, TIMES, noted)
+    assert noted == [(1e-9, 0.0), (2.5e-9, 1.0), (4e-9, 3.0)]
+    runs.run(one, Coasting(), one.initial.vector, TIMES)    # nobody asks
+
+
+def test_a_strike_at_the_last_look_counts():
+    one = coasting_scene((4.0, 8.0))
+    states = runs.run(one, Coasting(), one.initial.vector, TIMES)
+    assert states[:, 7] == pytest.approx([3.0, 3.0, 3.0, 1.0])
+
+
+def test_a_strike_before_the_first_look_acts_at_its_time():
+    one = coasting_scene((0.25, 8.0))
+    states = runs.run(one, Coasting(), one.initial.vector, TIMES)
+    angles = Rotation.from_quat(states[:2, 1:5]).as_rotvec()[:, 2]
+    assert angles == pytest.approx([3.0 * 0.25 + 0.75, 3.0 * 0.25 + 1.75])

@@ -9,6 +9,7 @@ from soak import IN_SOAK
 
 from rigid_body_sim.choice import comparison, forecast, measured, runs, settling
 from rigid_body_sim.choice.trial import Trial
+from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angle_between
@@ -73,6 +74,21 @@ def test_a_method_that_is_doubted_is_tried_where_the_others_miss(case, monkeypat
         told[self.prototype.method.NAME], 6.0))
     found = settling.settle(scene, list(told), 1e-11, 6.0, coarsest=2.0 ** -47)
     assert (found.method, found.tolerance) == (taken, 2.0 ** -47)
+
+
+@pytest.mark.parametrize(('least', 'taken'), [(1.25e-14, 'gauss16'), (1.26e-14, 'dop8')])
+def test_another_method_is_tried_where_its_least_error_is_as_small(least, taken, monkeypatch):
+    """It is up to a quarter larger in the table."""
+    told = {'dop8': 8e-11, 'gauss16': 2e-11}
+    scene = parse_scene(SLOW.replace('EFFECTS', SMOOTH_ROOT))
+    monkeypatch.setattr(
+        measured, 'least_error', lambda _, name: {'dop8': 1e-14, 'gauss16': least}[name])
+    monkeypatch.setattr(Trial, 'take', lambda self, tolerance: tolerance)
+    monkeypatch.setattr(Trial, 'misses', lambda *_: True)
+    monkeypatch.setattr(Trial, 'beside', lambda *_: 0.0)
+    monkeypatch.setattr(Trial, 'forecast', lambda self, _: forecast.Forecast(
+        told[self.prototype.method.NAME], 6.0))
+    assert settling.settle(scene, list(told), 1e-11, 6.0).method == taken
 
 
 @pytest.mark.without_numba
@@ -174,6 +190,75 @@ def test_only_a_nutation_that_is_faster_than_the_body_counts_beside_the_attitude
     assert settling.nutation(parse_scene(FALLING.replace('EFFECTS', slow))) == 0.0
     rate = settling.nutation(parse_scene(FALLING.replace('EFFECTS', ROTOR)))
     assert rate == near(1e5 / 0.4, rel=1e-3)
+
+
+@pytest.mark.parametrize('momentum', [1.5, 1.55])
+def test_a_nutation_counts_from_four_times_the_pace_of_the_body_on(momentum):
+    axis = np.array([0.3, 0.2, 1.0]) / np.sqrt(1.13)
+    turns = np.linalg.norm(np.array([0.2, 0.03, 0.0]) + momentum * axis) / 0.4
+    assert (turns > 4.0 * np.hypot(1.0, 0.1)) == (momentum > 1.5)
+    found = settling.nutation(parse_scene(FALLING.replace(
+        'EFFECTS', ROTOR.replace('1.0e+5', str(momentum)))))
+    assert found == near(turns if momentum > 1.5 else 0.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(('share', 'horizon', 'expected'), [
+    (1e-6, 1e-4, 1e-6), (1e-6, 2.56e-2, 1e-4), (1e-6, 1e3, 1.0)])
+def test_what_a_nutation_loses_grows_in_proportion_to_time(share, horizon, expected, monkeypatch):
+    """64 rad of it are followed, up to 2.56e-4 s at 2.5e5 rad/s."""
+    scene, seen = parse_scene(FALLING.replace('EFFECTS', ROTOR)), []
+
+    def run(scene, prototype, start, times):
+        states = np.zeros((len(times), 14))
+        states[:, 5] = 2.0 * (1.0 + share * len(seen))
+        states[:-1, 5] = 2.0    # the last look shows it
+        seen.append(float(times[-1]))
+        return states
+    monkeypatch.setattr(settling, 'nutation', lambda scene: 2.5e5)
+    monkeypatch.setattr(settling.runs, 'run', run)
+    prototype = Stepped(scene, 'dop8', 1e-9, horizon=horizon)
+    found = settling._nutation_lost(scene, prototype, horizon)
+    assert found == near(expected, rel=1e-5)
+    assert seen == near([min(horizon, 2.56e-4)] * 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(('error', 'met', 'lost', 'expected'), [
+    (1e-6, 2.0, 1e-5, (1e-6, 2.0)), (1e-6, 2.0, 1e-3, (1e-3, 0.02)),
+    (1e-4, 0.01, 1e-3, (1e-3, 0.01)), (None, None, 1e-3, (1e-3, 0.02)),
+    (2e-3, 0.01, 1e-3, (2e-3, 0.01)), (None, None, 1e-5, (None, None))])
+def test_the_larger_of_the_errors_of_attitude_and_nutation_is_told(error, met, lost, expected,
+                                                                   monkeypatch):
+    """It is met while it is in proportion to time, or as long as that of the attitude is."""
+    scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
+    monkeypatch.setattr(settling, '_nutation_lost', lambda *_: lost)
+    monkeypatch.setattr(Trial, 'forecast', lambda *_: forecast.Forecast(error, met))
+    found = settling.of_named(scene, Stepped(scene, 'dop8', 1e-9, horizon=2.0), 1e-5, 2.0)
+    assert found == (expected if None in expected else near(expected, rel=1e-12))
+
+
+def test_what_was_settled_is_the_same_where_all_that_is_told_is():
+    one = settling.Settled('dop8', 1e-9, 1e-10, 3.0)
+    assert one == settling.Settled('dop8', 1e-9, 1e-10, 3.0)
+    for other in (('dop8', 1e-8, 1e-10, 3.0), ('taylor', 1e-9, 1e-10, 3.0),
+                  ('dop8', 1e-9, 2e-10, 3.0), ('dop8', 1e-9, 1e-10, 2.0)):
+        assert one != settling.Settled(*other)
+    assert one != 'dop8'
+
+
+@pytest.mark.parametrize(('told', 'accuracy', 'taken'), [
+    (5e-10, 1e-9, 'lanes'), (2e-9, 1e-9, 'lanes'), (4e-9, 1e-9, 'first'), (4e-9, 5e-9, 'lanes'),
+    (None, 1e-9, 'lanes')])
+def test_side_by_side_is_preferred_where_it_errs_by_no_more_than_asked_or_than_the_first(
+        told, accuracy, taken):
+    names = [name for name, one in METHODS.items() if one.FAMILY.LANES]
+    alone = next(name for name, one in METHODS.items() if not one.FAMILY.LANES)
+    first, lanes = (settling.Settled(name, 1e-9, error, 1.0)
+                    for name, error in ((alone, 3e-9), (names[0], told)))
+    found = settling.side_by_side(first, lambda able: lanes, [alone, names[0]], accuracy)
+    assert found is (lanes if taken == 'lanes' else first)
+    # one that has lanes stays, and so does one beside which there is none
+    assert settling.side_by_side(lanes, None, [alone, names[0]], accuracy) is lanes
+    assert settling.side_by_side(first, None, [alone], accuracy) is first
 
 
 def test_a_copy_and_a_recording_take_the_forecast_along():

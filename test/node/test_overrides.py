@@ -143,6 +143,7 @@ def test_the_node_takes_its_own_dump(start):
 @pytest.mark.parametrize('arguments', [
     [], ['--ros-args'], ['--ros-args', '-p'], ['--ros-args', '-p', 'rate'],
     ['--ros-args', '-p', 'rate:='], ['--ros-args', '-p', 'rate:=[1'], ['-p', 'rate:=5'],
+    ['--ros-args', '-p', ':=5'], ['--ros-args', '-p', 'rate:=--- 1\n--- 2'],
     ['--ros-args', '--params-file', '/nowhere.yaml'], ['--ros-args', '--', '-p', 'rate:=5'],
     ['--ros-args', '-r', '__ns:=/left', '--log-level', 'warn']])
 def test_what_is_not_understood_is_left_to_rcl(arguments):

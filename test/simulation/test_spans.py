@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events of a span: each is reported once, by the call that reaches it, even if found early."""
+"""Spans: which one holds at a time, and its events.
 
+Each event is reported once, by the call that reaches it, even if it was found early.
+"""
+
+import numpy as np
 import pytest
 
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.simulation.spans import Span, events_between
+from rigid_body_sim.simulation.spans import Span, events_between, states_at, wrenches_at
 
 
 class Solver:
@@ -51,6 +55,43 @@ def test_events_of_a_motion_come_from_the_span_that_holds_then():
     found = list(events_between([first, second], 2.0, 6.0, 0.1))
     assert times(found) == [3.0, 4.0, 5.0, 6.0]
     assert first.solver.asked == [(2.0, 4.5, 0.1)] and second.solver.asked == [(4.5, 6.0, 0.1)]
+
+
+class Steady:
+    """Its states have the time and its own number."""
+
+    def __init__(self, number):
+        self.number = number
+
+    def state(self, time, out):
+        out[:], out[0] = self.number, time
+
+    def states(self, times, out):
+        out[:] = self.number
+        out[:, 0] = times
+
+
+@pytest.mark.parametrize('whole', [
+    [0.0, 1.9, 2.0, 3.0, 4.5, 9.0], [9.0, 2.0, 0.5, 4.5, 2.0], [2.0], [4.4], [4.5], [], [1.0]])
+def test_a_state_is_that_of_the_last_span_that_has_begun(whole):
+    """A span begins at its very time, and two may begin at one: then the later one holds."""
+    spans = [Span(time, Steady(number), f'held {number}', (), None, None)
+             for number, time in enumerate([0.0, 2.0, 2.0, 4.5])]
+    expected = [0 if time < 2.0 else 2 if time < 4.5 else 3 for time in whole]
+    found = states_at(spans, np.array(whole))
+    assert found[:, 0].tolist() == whole and found[:, 1].tolist() == expected
+    assert wrenches_at(spans, np.array(whole)) == [f'held {number}' for number in expected]
+    assert states_at(spans[:1], np.array(whole))[:, 1].tolist() == [0.0] * len(whole)
+
+
+def test_only_the_spans_that_reach_beyond_a_time_are_asked_for_events():
+    first, second, third = (Span(time, Solver(), None, (), None, None) for time in (0.0, 3.0, 6.0))
+    assert times(events_between([first, second, third], 3.0, 8.0, 0.1)) == [
+        4.0, 5.0, 6.0, 7.0, 8.0]
+    assert first.solver.asked == []    # it ends at that time
+    # the last one that a look reaches is looked at up to there
+    assert times(events_between([Span(0.0, Solver(), None, (), None, None), second], 0.0, 2.0,
+                                0.1)) == [1.0, 2.0]
 
 
 SLIDES = """

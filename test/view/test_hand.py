@@ -13,7 +13,7 @@ from rigid_body_sim import Simulation, load_scene
 from rigid_body_sim.drawing.body import drawing_of
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.scene.scene import parse_scene, scene_names
-from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, TORQUE
+from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, TORQUE, WORLD
 from rigid_body_sim.view.hand import PULL, Hand, pace_of, together
 from rigid_body_sim.view.mouse import hit
 from rigid_body_sim.view.snapshots import Mechanics
@@ -55,6 +55,33 @@ def test_the_wrench_is_the_force_at_the_grabbed_point():
     [row] = hand.pull(vector, grabbed, cursor, 2.0)
     assert row[FORCE] == pytest.approx([0.0, 4.0 * 0.3 * 2.0 / 7.0, 0.0])
     assert row[TORQUE] == pytest.approx(np.cross(grabbed, row[FORCE]))
+
+
+def test_the_spring_is_damped_by_the_speed_of_the_grabbed_point():
+    """M (pace^2 x - 2 x 0.7 pace v), along x at the middle of a ball of 1 kg."""
+    hand, vector = hand_of('sphere', 'initial.angular_velocity=[0, 0, 0]')
+    vector[11] = 0.5
+    [row] = hand.pull(vector, np.zeros(3), np.array([0.3, 0.0, 0.0]), 2.0)
+    assert row[FORCE] == pytest.approx([4.0 * 0.3 - 2.0 * 0.7 * 2.0 * 0.5, 0.0, 0.0])
+    assert hand.pull(vector, np.zeros(3), np.array([0.35, 0.0, 0.0]), 2.0) is None    # at rest
+
+
+@pytest.mark.parametrize(('least', 'axes'), [(0.0099, BODY), (0.0101, WORLD)])
+def test_about_an_axis_of_less_than_a_hundredth_of_the_largest_moment_nothing_is_turned(
+        least, axes):
+    scene = parse_scene(SLIM.format(least))
+    hand, vector = Hand(Mechanics(scene)), scene.initial.vector
+    [row] = hand.pull(vector, np.array([0.1, 0.2, 0.3]), np.array([0.5, 0.1, 0.3]), 2.0)
+    assert row[AXES] == axes
+    assert (abs(row[TORQUE][2]) < 1e-15) == (axes == BODY)
+
+
+@pytest.mark.parametrize(('strength', 'speed', 'lag', 'pace'), [
+    (1.0, 1.0, 1e-3, PULL), (4.0, 1.0, 1e-3, 2.0 * PULL), (1.0, 10.0, 1e-3, 0.1 * PULL),
+    (100.0, 1.0, 1.0 / 60.0, 12.0), (1.0, 1e-3, 1e-3, 200.0)])
+def test_the_spring_is_as_stiff_as_its_delay_allows(strength, speed, lag, pace):
+    """A fifth of a radian passes in a delay, at most."""
+    assert pace_of(strength, speed, lag) == near(pace, rel=1e-12)
 
 
 @pytest.mark.parametrize(('speed', 'strength'), [

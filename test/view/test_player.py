@@ -55,6 +55,8 @@ def test_of_a_long_recording_every_fourth_state_is_kept(path, monkeypatch):
 def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(path):
     one = Player(path)
     assert one.end == pytest.approx(0.6)
+    # it is played, and cannot be pushed or edited
+    assert (one.plays, one.paces, one.pushes, one.edits) == (True, True, False, False)
     begun = one.at(0.1, 0.05)
     assert begun.restarted
     assert (len(begun.trail), begun.events) == (1, ())

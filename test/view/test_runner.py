@@ -85,6 +85,48 @@ def test_it_keeps_the_pace_of_the_clock_and_its_trail_is_dense(running):
     assert len(snapshot.trail) == 1 + runner.MOST_BETWEEN
 
 
+def test_snapshots_come_every_sixtieth_of_a_second_or_as_often_as_the_work_allows(monkeypatch):
+    clock, advanced = [100.0], []
+
+    class Busy(Pipe):
+        """Waits as long as it is asked to; a request comes at once in the second period."""
+
+        def poll(self, seconds):
+            if len(advanced) == 1 and not self.sent:
+                self.sent.append('asked')
+                clock[0] += 0.25 * seconds
+                return True
+            if len(advanced) == 5:
+                raise EOFError
+            clock[0] += seconds
+            return False
+
+        def recv(self):
+            return 'pause', True
+
+    def advance(seconds):
+        advanced.append(seconds)
+        if len(advanced) == 2:
+            clock[0] += 1.0    # work for a second: the next ones are due at once, and then in time
+    monkeypatch.setattr(runner.time, 'monotonic', lambda: clock[0])
+    one = Runner(Busy(), SETTINGS, None)
+    monkeypatch.setattr(one, '_advance', advance)
+    with pytest.raises(EOFError):
+        one.run()
+    assert one._paused
+    assert advanced == pytest.approx([0.0, 1.0 / 60.0, 1.0, 0.0, 1.0 / 60.0])
+
+
+def test_the_motion_ends_while_ticks_are_exact(running, monkeypatch):
+    """1e9 s at 1000 Hz; here 1 s of that, 10 s at 100 Hz."""
+    one, pipe = running
+    monkeypatch.setattr(runner, 'LAST_TIME', 1.0)
+    for until in (9.0, 10.0, 10.0):
+        one._cost = 0.0
+        one._advance(9.0)
+        assert pipe.snapshots()[-1].time == until
+
+
 @pytest.mark.parametrize('request_', ['scene', 'reset'])
 def test_what_a_preparation_takes_is_no_time_of_the_motion(running, monkeypatch, request_):
     """A motion once leapt by the seconds in which its kernels were compiled."""
@@ -105,13 +147,19 @@ def test_what_a_preparation_takes_is_no_time_of_the_motion(running, monkeypatch,
     assert pipe.snapshots()[0].time == pytest.approx(0.01)
 
 
-def test_work_that_takes_long_makes_the_motion_lag(running):
+def test_work_that_takes_long_makes_the_motion_lag(running, monkeypatch):
     one, pipe = running
     pipe.snapshots()
     one._cost = 5.0    # a second of the motion takes five
     one._advance(0.5)
     assert pipe.snapshots()[0].time == pytest.approx(runner.LONGEST_WORK / 5.0)
     assert one._cost < 5.0
+    # a fifth of what it took this time: 0.3 s for 0.1 s of the motion
+    ticks = iter((7.0, 7.3))
+    monkeypatch.setattr(runner.time, 'perf_counter', lambda: next(ticks))
+    one._cost = 0.25
+    one._advance(0.1)
+    assert one._cost == pytest.approx(0.8 * 0.25 + 0.2 * 3.0)
 
 
 def test_a_pause_halts_it_and_steps_go_on_by_a_snapshot(running):

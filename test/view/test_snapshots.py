@@ -84,11 +84,17 @@ def test_a_body_that_flies_freely_feels_no_force_though_its_origin_is_carried_ro
     assert not found.force.any() and not found.torque.any()
 
 
+BRAKED = ('scene: s\nbody: {mass: 3.0, inertia: [1.0, 1.5, 2.0]}\nconstraint: free\n'
+          "effects: [force: {value: ['-0.1*vx', 0, 0]}]\ninitial: {}\n")
+
+
 @pytest.mark.parametrize(('scene', 'needed'), [
     ('tennis_racket', False), ('heavy_top', False), ('kater_pendulum', False),
-    ('billiard_low', True), ('tossed_coin', True)])
+    ('billiard_low', True), ('tossed_coin', True), (parse_scene(BRAKED), True)],
+    ids=lambda one: getattr(one, 'name', None))
 def test_a_source_without_velocities_knows_whose_forces_need_them(scene, needed):
-    assert Mechanics(load_scene(scene)).need_velocity() is needed
+    scene = load_scene(scene) if isinstance(scene, str) else scene
+    assert Mechanics(scene).need_velocity() is needed
 
 
 class Gui:
@@ -96,6 +102,7 @@ class Gui:
 
     def add_uplot(self, data, *series, **settings):
         self.chart = types.SimpleNamespace(data=data, scales=settings['scales'])
+        self.series, self.settings = series, settings
         return self.chart
 
 
@@ -185,6 +192,23 @@ def test_curves_hold_the_last_residuals_in_units_of_their_scale():
     curves.draw(1.0)
     assert len(gui.chart.data[0]) == POINTS
     assert gui.chart.data[0][0] == 1.0 - POINTS
+
+
+def test_the_curves_stand_out_from_a_shaded_band_between_dashed_lines():
+    gui = Gui()
+    Curves(gui)
+    [(times, energy, momentum, upper, lower)] = gui.series
+    assert [one['label'] for one in (times, energy, momentum)] == ['t - now (s)', 'energy', 'L²']
+    assert energy['width'] == momentum['width'] > upper['width'] == lower['width'] > 0
+    assert 'dash' not in energy and 'dash' not in momentum and upper['dash'] == lower['dash']
+    assert len({energy['stroke'], momentum['stroke'], upper['stroke']}) == 3
+    [band] = gui.settings['bands']
+    assert band['series'] == (3, 4)    # the places of its edges, after the times
+    # the axis of x is no clock, and that of y fits the data
+    assert gui.chart.scales['x']['time'] is False and gui.chart.scales['y'] == {'auto': True}
+    assert gui.settings['legend']['show'] and 'units of 1e-16' in gui.settings['title']
+    across, up = gui.settings['axes']
+    assert across['label'] == times['label'] and up['grid']['width'] == across['grid']['width'] > 0
 
 
 @pytest.mark.parametrize('spin', [3.0, 119.0, 240.0, -400.0])

@@ -4,6 +4,7 @@
 import dataclasses
 import json
 import sys
+import types
 
 import numpy as np
 import pytest
@@ -166,6 +167,11 @@ def test_exact_is_at_the_floor_of_the_racket(racket):
 def test_methods_come_from_the_table(racket, monkeypatch):
     names = {one.name for one in runner.ours(*racket)}
     assert {'exact', 'dop8', 'rk4'} <= names
+    # settings go from coarse to fine; tolerances are from a tenth to what doubles carry
+    swept = {one.control: one.settings for one in runner.ours(*racket) if one.control != 'none'}
+    assert all(list(one) == sorted(one, reverse=True) for one in swept.values())
+    assert swept['accuracy'] == near([float(f'1e-{k}') for k in range(1, 16)], rel=1e-14)
+    assert all(one.settings == (None,) for one in runner.ours(*racket) if one.control == 'none')
     # the table of all tests keeps its order
     monkeypatch.setattr(integrators, 'METHODS', {
         name: method for name, method in integrators.METHODS.items() if name != 'rk4'})
@@ -317,3 +323,82 @@ def test_steps_are_shares_of_a_radian_at_the_fastest_rate(racket):
     counts = [problem.duration / step for step in runner.steps_for(problem, quick)]
     assert counts == near([32 * round(problem.duration * 5e3 * share / 32)
                            for share in runner.STEPS_OF_A_RADIAN], rel=1e-12)
+    # one that swings: about as fast as a pendulum of its length does, sqrt(M g r/I) = 2 rad/s
+    held = parse_scene('scene: a\nbody: {mass: 1, inertia: [3, 3, 4], center_of_mass: '
+                       '[0, 0, -1]}\nconstraint: pivot\neffects: [gravity: {g: 16}]\n'
+                       'initial: {angular_velocity: [0, 0, 5]}\n')
+    slow = dataclasses.replace(truth, omega=omega / 1e4)
+    swinging = dataclasses.replace(problem, scene=held, duration=64.0)
+    counts = [64.0 / step for step in runner.steps_for(swinging, slow)]
+    assert counts == near([32 * 14 * 2 ** k for k in range(-1, 16)], rel=1e-12)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Return the CPU time (s, a list of one number), which only tests put forward."""
+    now = [50.0]
+    monkeypatch.setattr(
+        measure, 'time', types.SimpleNamespace(process_time=lambda: now[0]))
+    return now
+
+
+def costing(clock, *costs):
+    """Return a Run whose runs cost so many CPU seconds in turn, the last cost again and again."""
+    left, ran = list(costs), []
+
+    def to(time):
+        ran.append(time)
+        clock[0] += left.pop(0) if len(left) > 1 else left[0]
+    return runner.Run(lambda: None, to, lambda: None), ran
+
+
+@pytest.mark.without_numba
+def test_a_sample_is_the_mean_of_as_many_runs_as_take_a_millisecond(clock):
+    """Of 0.1 ms each: 1, 2, 4, 8 runs are too few, and 16 are enough."""
+    run, ran = costing(clock, *[1e-4] * 47, *[3e-4] * 16, 2e-4)
+    point, notes = {}, []
+    timed = measure._Timed(run, point, notes, 4.0)
+    timed.sample()
+    assert len(ran) == 1 + 2 + 4 + 8 + 16 + 16
+    for _ in range(2):
+        timed.sample()
+    assert len(ran) == 47 + 2 * 16 and set(ran) == {4.0}
+    timed.tell()
+    assert point['cpu'] == near({'median': 2e-4 / 4.0, 'least': 1e-4 / 4.0, 'most': 3e-4 / 4.0},
+                                rel=1e-9)
+    run, ran = costing(clock, 1.1e-3)    # once is enough
+    measure._Timed(run, {'setting': 1}, notes, 4.0).sample()
+    assert len(ran) == 2
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('limit', 'swept'), [(0.26, 3), (0.24, 1)])
+def test_a_sweep_ends_after_the_first_setting_beyond_its_limit(limit, swept, clock):
+    """Making it and its first run are the set-up; the second run counts."""
+    problem = types.SimpleNamespace(duration=4.0)
+    truth = types.SimpleNamespace(
+        times=np.array([4.0]), floor=np.array([1e-15]),
+        errors=lambda states: (np.array([1e-3]), np.array([2e-3])))
+
+    def make(setting):
+        run, _ = costing(clock, 0.5, 0.25, 0.0)
+        clock[0] += 2.0
+        return runner.Run(run.start, run.to, lambda: [0.0] * 7)
+    balance = types.SimpleNamespace(residuals=lambda *_: {})
+    found = [point for point, _ in measure._sweep(
+        problem, truth, runner.Runner('a', 'step', (1, 2, 3), make), limit, balance, [])]
+    assert len(found) == swept
+    assert [(point['set_up'], point['first_run']) for point in found] == [(2.5, 0.25)] * swept
+
+
+@pytest.mark.without_numba
+def test_what_acts_without_striking_is_run_by_its_solver_alone(monkeypatch):
+    monkeypatch.setattr(runner, 'Simulation', None)    # it has ticks, a ledger and events
+    problem = suite.problem('heavy_symmetric_top')
+    exact = next(iter(runner.ours(problem, reference.load(problem))))
+    run = exact.make(None)
+    expected = Simulation(problem.scene).states([0.5, 2.0]).vector[:, 1:8]
+    run.start()
+    for time, state in zip([0.5, 2.0], expected, strict=True):
+        run.to(time)
+        assert (exact.name, run.state().tolist()) == ('exact', state.tolist())
