@@ -65,9 +65,9 @@ def _directions(e):
 def _next_order(o, row, k, sums, newest, constant, dragged=False):
     """Return the next coefficients, with drag or without."""
     e1, e2 = _directions([newest[i] for i in range(DIRECTIONS)])
-    changes = [o.plus(added, o.minus(subtracted))
-               for added, subtracted in zip(sums[:12:2], sums[1:12:2], strict=True)]
-    for i, own in enumerate(sums[12:]):
+    terms = iter(sums)
+    changes = [o.plus(next(terms), o.minus(next(terms))) for _ in range(DIRECTIONS)]
+    for i, own in enumerate(terms):
         # terms that are known first come first
         rate = (
             o.gather(row(V + i), e2[i], row(CONSTANT + i))
