@@ -319,9 +319,9 @@ def _for_all(choice, starts, times):
     """
     if choice.method == 'exact' or not len(times):
         return choice
-    rates = np.linalg.norm(starts[:, PLACES['angular_velocity']], axis=1)
-    others = np.linspace(0, len(starts) - 1, SAMPLED - 1).astype(int)
-    sample, end = starts[[rates.argmax(), *others]], times[[times.argmax()]]
+    x2, y2, z2 = np.square(starts[:, PLACES['angular_velocity']].T)
+    others = np.arange(SAMPLED - 1) * (len(starts) - 1) // (SAMPLED - 2)
+    sample, end = starts[[(x2 + y2 + z2).argmax(), *others]], times[[times.argmax()]]
     found = Ensemble(np.empty((SAMPLED, 1, STATE_SIZE)), asked=(sample, end))
     suited = choice
     for _ in range(LOOKS):
