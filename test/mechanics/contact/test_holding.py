@@ -15,6 +15,7 @@ from rigid_body_sim.mechanics.contact.holding import (
     holds_still,
     rolling_couples,
     tips,
+    way_at,
     way_out,
 )
 from rigid_body_sim.mechanics.contact.parameters import SLOW
@@ -134,8 +135,8 @@ def test_a_ball_rests_on_a_slope_no_steeper_than_rolling_friction_and_mu(changes
 
 @pytest.mark.parametrize(('surface', 'along', 'couple', 'held'), [
     ('disk', 0.0, (2.4, 3.1, 0.0), True), ('disk', 0.0, (2.4, 3.3, 0.0), False),
-    ('torus', 5.0, (0.0, 3.7, 0.0), True), ('torus', 5.0, (0.0, 3.8, 0.0), False),
-    ('torus', 5.0, (0.0, -4.2, 0.0), True), ('torus', 5.0, (0.0, -4.3, 0.0), False),
+    ('torus', 5.0, (-2.96, 2.22, 0.0), True), ('torus', 5.0, (-3.04, 2.28, 0.0), False),
+    ('torus', 5.0, (3.36, -2.52, 0.0), True), ('torus', 5.0, (3.44, -2.58, 0.0), False),
     ('disk', 5.9, (0.0, 0.0, 0.0), True), ('disk', 6.1, (0.0, 0.0, 0.0), False),
     ('disk', 3.0, (0.0, 0.0, 0.59), True), ('disk', 3.0, (0.0, 0.0, -0.61), False)])
 def test_a_flat_ring_rests_under_what_its_circle_and_friction_can_bear(
@@ -146,5 +147,22 @@ def test_a_flat_ring_rests_under_what_its_circle_and_friction_can_bear(
     """
     c = parameters(surface, ROLLS)
     at = posture(c, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
-    assert bool(holds_still(c, at, (along, 0.0, -20.0), couple)) is held
-    assert not holds_still(c, at, (along, 0.0, 20.0), couple)
+    assert bool(holds_still(c, at, (0.6 * along, 0.8 * along, -20.0), couple)) is held
+    assert not holds_still(c, at, (0.6 * along, 0.8 * along, 20.0), couple)
+
+
+@pytest.mark.parametrize(('share', 'held'), [(0.99, True), (1.01, False)])
+@pytest.mark.parametrize('surface', ['disk', 'torus'])
+def test_a_wheel_that_stands_rests_on_a_slope_along_its_rim_as_a_ball_does(surface, share, held):
+    c = parameters(surface, ROLLS)._replace(swift=2.0)
+    at = posture(c, ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
+    assert bool(holds_still(c, at, (share * 0.01 * 20.0, 0.0, -20.0), (0.0, 0.0, 0.0))) is held
+
+
+@pytest.mark.parametrize(('onset', 'angle'), [(1.0, 0.6), (0.0, 0.0)])
+def test_the_way_of_a_rolling_that_has_just_begun_turns_with_time(onset, angle):
+    """By atan(turn (t - since)): it turns at the rate `turn` as the body begins to roll."""
+    c = parameters('sphere', ROLLS)._replace(
+        way=(0.6, 0.8), onset=onset, turn=2.0, since=1.0)
+    x, z = np.array([[1.0, -angle], [angle, 1.0]]) @ c.way / np.hypot(1.0, angle)
+    assert way_at(c, 1.3) == pytest.approx((x, z), abs=1e-15)    # 1.1e-16
