@@ -159,9 +159,10 @@ def test_kicks_are_what_symmetric_moments_leave_out_of_eulers_equations(k):
     """In a time too short for a kick to turn: omega of unequal moments less that of equal ones."""
     i, j, time, d = (k + 1) % 3, (k + 2) % 3, 1e-4, 2e-3
     start = np.random.default_rng(7).normal(size=(3, nearly.STRETCHES))
-    equal, unequal, differences = [2.0] * 3, [2.0] * 3, [0.0] * 3
+    equal, unequal = [2.0] * 3, [2.0] * 3
     equal[k] = unequal[k] = 3.1
-    unequal[i], unequal[j], differences[k] = 2.0 + 0.5 * d, 2.0 - 0.5 * d, d
+    unequal[i], unequal[j] = 2.0 + 0.5 * d, 2.0 - 0.5 * d
+    differences = [unequal[axis - 2] - unequal[axis - 1] for axis in range(3)]
     ends, middles = turned(equal, start, time), turned(equal, start, 0.5 * time)
     sums = [sum(share * w[(axis + 1) % 3] * w[(axis + 2) % 3] for share, w in
                 ((1.0, start), (4.0, middles), (1.0, ends))) * time / 6.0 for axis in range(3)]
