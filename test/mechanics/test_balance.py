@@ -132,6 +132,20 @@ def test_pendulum_at_rest_at_its_lowest_point_pulls_with_its_weight_and_at_speed
         np.testing.assert_allclose(balance.point, [0.0, 0.0, 0.5])
 
 
+@pytest.mark.parametrize(('rate', 'push', 'growth'), [
+    (0.0, 0.02, 0.0), (0.0, -0.02, 0.0), (0.0, 0.05, 2.0), (0.0, -0.05, -2.0), (1.0, 0.05, 2.0),
+    (-1.0, 0.05, 8.0), (1.0, -0.02, -5.0)])
+def test_dry_friction_at_a_hinge_bears_up_to_its_torque_at_rest_and_all_of_it_in_motion(
+        rate, push, growth):
+    """A moment of 0.01 kg m^2, friction of 0.03 N m, and a push about the axis."""
+    made = scene('{hinge: {axis: [0, 1, 0]}}', '[dry_friction: {torque: 0.03}]',
+                 '{mass: 2.0, inertia: [0.02, 0.01, 0.02]}')
+    start = State.of(0.0, angular_velocity=(0.0, rate, 0.0)).vector
+    found = Dynamics(made).balance(start, Wrench(torque=(0.0, push, 0.0)))
+    np.testing.assert_allclose(found.angular_acceleration, [0.0, growth, 0.0], atol=1e-14)
+    assert np.abs(found.torque).max() < 1e-15    # the hinge bears nothing along its axis
+
+
 def test_ball_slides_rolls_and_is_pushed():
     ball = load_scene('billiard_center')
     M, a, friction = ball.body.mass, ball.body.radius, ball.effect('sliding_friction')

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.bounds import borne, drive, swing_rate, unbounded
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -17,6 +17,7 @@ def scene(constraint, effects, inertia=(2.0, 3.0, 4.0)):
 
 
 TORQUE = 'torque: {value: [0, 3, 4]}'
+SPRING = 'spring: {stiffness: 5.0, at: [0, 0, 1], anchor: [1, 0, 2]}'
 HINGE = '{hinge: {axis: [0, 1, 0], through: [0, 0, 0.4]}}'
 
 
@@ -63,3 +64,17 @@ def test_a_swinging_body_counts_by_the_middle_moment_about_its_point():
     held = scene('pivot', 'gravity: {g: 10}')
     middle = sorted(held.constraint.inertia(held.body).moments)[1]
     assert swing_rate(held) == pytest.approx(math.sqrt(4.0 * 2.0 * 10.0 * 0.5 / middle))
+
+
+def test_dry_friction_at_a_hinge_bears_its_torque_over_the_moment():
+    assert borne(scene(HINGE, 'dry_friction: {torque: 2.0}')) == pytest.approx(2.0 / 3.18)
+    assert borne(scene(HINGE, 'gravity: {g: 10}')) == 0.0
+
+
+@pytest.mark.parametrize(('effects', 'expected'), [
+    ('', False), ('gravity: {g: 10}', False), (SPRING, True),
+    (f'gravity: {{g: 10}}, {SPRING}', True),
+    ('strike: {impulse: [1, 0, 0], time: 1.0}', False)])
+def test_a_spring_has_no_bound_and_a_strike_needs_none(effects, expected):
+    """A spring pulls the more the longer it is; a strike does not act between two looks."""
+    assert unbounded(scene('pivot', effects)) is expected

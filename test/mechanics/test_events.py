@@ -98,10 +98,10 @@ class Told:
         out[5], out[8] = self.rate, self.value(time)
 
 
-def watcher(value, share=0.5, largest=1.0, rate=0.0, swing=0.0, drive=0.0):
+def watcher(value, share=0.5, largest=1.0, rate=0.0, swing=0.0, drive=0.0, **more):
     solver = Told(value, rate)
     watch = Watch('crossed', lambda state: state[8], share, lambda state: largest)
-    return Watcher(solver, (watch,), 0.0, swing, drive), solver
+    return Watcher(solver, (watch,), 0.0, swing, drive, **more), solver
 
 
 def test_each_crossing_is_an_event_at_its_time_and_is_told_once():
@@ -143,6 +143,16 @@ def test_between_two_looks_the_body_turns_by_a_fifth_of_a_radian(rate, swing, dr
     found.events(1.0)
     step = solver.asked[2] - solver.asked[1]
     assert (rate + swing) * step + 0.5 * drive * step * step == near(0.2, rel=1e-12)
+    assert solver.asked[-1] == 1.0
+
+
+@pytest.mark.parametrize(('unbounded', 'rate', 'step'), [
+    (True, 0.0, events.BLINK), (True, 4.0, 0.05), (True, 1.0, events.BLINK), (False, 1.0, 0.2),
+    (False, 0.0, 1.0)])
+def test_where_nothing_bounds_what_acts_looks_are_a_blink_apart_at_most(unbounded, rate, step):
+    found, solver = watcher(lambda time: 1.0, rate=rate, unbounded=unbounded)
+    found.events(1.0)
+    assert solver.asked[1] - solver.asked[0] == near(step, rel=1e-12)
     assert solver.asked[-1] == 1.0
 
 

@@ -5,12 +5,16 @@ import json
 import math
 import pathlib
 import sys
+import types
 
+import numpy as np
 import pytest
 from mpmath import mpf
 from near import near
+from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.motions import nearly
 from rigid_body_sim.motions.nearly import nearly_absorbing
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import load_scene, parse_scene
@@ -134,3 +138,46 @@ def test_a_difference_that_would_show_is_left_to_methods(difference, accuracy):
     found = nearly_absorbing(top(difference, **SLOW), 100.0)
     assert found is None or found.error > accuracy
     assert nearly_absorbing(load_scene('heavy_top'), 100.0) is None
+
+
+def turned(moments, omega, time):
+    """Return omega of many free bodies after a short time, by a step of Runge and Kutta."""
+    I1, I2, I3 = moments
+
+    def rates(w):
+        return np.array([(I2 - I3) / I1 * w[1] * w[2], (I3 - I1) / I2 * w[2] * w[0],
+                         (I1 - I2) / I3 * w[0] * w[1]])
+    k1 = rates(omega)
+    k2 = rates(omega + 0.5 * time * k1)
+    k3 = rates(omega + 0.5 * time * k2)
+    k4 = rates(omega + time * k3)
+    return omega + time / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+
+
+@pytest.mark.parametrize('k', [0, 1, 2])
+def test_kicks_are_what_symmetric_moments_leave_out_of_eulers_equations(k):
+    """In a time too short for a kick to turn: omega of unequal moments less that of equal ones."""
+    i, j, time, d = (k + 1) % 3, (k + 2) % 3, 1e-4, 2e-3
+    start = np.random.default_rng(7).normal(size=(3, nearly.STRETCHES))
+    equal, unequal = [2.0] * 3, [2.0] * 3
+    equal[k] = unequal[k] = 3.1
+    unequal[i], unequal[j] = 2.0 + 0.5 * d, 2.0 - 0.5 * d
+    differences = [unequal[axis - 2] - unequal[axis - 1] for axis in range(3)]
+    ends, middles = turned(equal, start, time), turned(equal, start, 0.5 * time)
+    sums = [sum(share * w[(axis + 1) % 3] * w[(axis + 2) % 3] for share, w in
+                ((1.0, start), (4.0, middles), (1.0, ends))) * time / 6.0 for axis in range(3)]
+    inertia = types.SimpleNamespace(moments=equal, differences=differences)
+    kicks = nearly._kicks(inertia, tuple(equal), ends - start, sums)
+    expected = turned(unequal, start, time) - ends
+    apart, size = np.abs(kicks - expected).max(axis=1), np.abs(expected).max(axis=1)
+    # measured: 5e-4, for the second order of d
+    assert (apart < 2e-3 * size).all()
+
+
+def test_a_small_change_of_attitude_is_a_vector_whichever_sign_quaternions_have():
+    chance = np.random.default_rng(3)
+    p, small = Rotation.random(40, random_state=5), 1e-6 * chance.normal(size=(40, 3))
+    signs = np.where(np.arange(40) % 3 == 0, -1.0, 1.0)[:, None]
+    found = nearly._between(p.as_quat(), signs * (Rotation.from_rotvec(small) * p).as_quat())
+    # measured: 4e-16, from the rounding of quaternions
+    assert np.abs(found - small).max() < 2e-15

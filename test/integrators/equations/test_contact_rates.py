@@ -43,7 +43,7 @@ initial: {angular_velocity: [0, 0, 0]}
 @pytest.mark.parametrize(('gap', 'speed', 'watched'), [
     (0.01, -1.0, 0.01), (0.01, 1.0, 0.01), (0.01, 0.0, 0.01), (-1e-18, -1.0, -1e-18),
     (-1e-18, 1e-6, 0.0), (-1e-18, 0.0, 0.0), (-1e-18, -1e-17, 0.0), (0.0, 1.0, 0.0)])
-@pytest.mark.parametrize('turning', [(0.0, 0.0, 0.0), (0.0, 0.0, 3.0)])
+@pytest.mark.parametrize('turning', [(0.0, 0.0, 0.0), (0.0, 0.0, 3.0), (-3.0, 3.0, 0.0)])
 def test_a_gap_ends_a_flight_when_it_shrinks_by_more_than_rounding(gap, speed, watched, turning):
     """A body that has just lifted off is not below the plane by the rounding of its gap."""
     bound = OnPlane(SCENE, None, None, None)

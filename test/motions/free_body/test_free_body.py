@@ -4,6 +4,7 @@
 import json
 import math
 import pathlib
+from fractions import Fraction
 
 import mpmath as mp
 import numpy as np
@@ -213,3 +214,34 @@ def test_moments_of_one_double_are_sorted_by_what_was_lost(lost):
     assert np.isfinite(anchors.INERTIA.numbers(sizes)).all()
     in_order = anchors.rotation_parameters(Inertia((1.0, 1.0, 2.0), lost=(small, middle, 0.0)))
     assert sizes[:3] == in_order[:3]
+
+
+@pytest.mark.parametrize(('small', 'large'), [
+    (1.5, 0.7), (1.0, 1e-300), (1e-300, 1.0), (1e-200, 3e-190), (3e-190, -1e-200), (-2e-71, 1e-72),
+    (0.0, 1e-250), (1e-280, 0.0), (0.0, 0.0)])
+def test_the_discriminant_is_exact_to_the_last_digits_of_pairs_however_slow_the_body(small, large):
+    """It is (c - a)/(a b c) (c (c - b) large^2 - a (b - a) small^2) for moments a, b, c."""
+    sizes = anchors.rotation_parameters(Inertia((1.0, 2.0, 4.0)))
+    numbers = np.array(anchors.INERTIA.numbers(sizes))
+    a, b, c = Fraction(1, 8), Fraction(1, 4), Fraction(1, 2)    # in a unit of their own
+    of_large, of_small = (Fraction(large) ** 2 * c * (c - b), Fraction(small) ** 2 * a * (b - a))
+    factor = (c - a) / (a * b * c)
+    (high, low), lift = anchors._discriminant(numbers, small, large)
+    found = (Fraction(high) + Fraction(low)) * Fraction(lift) ** 2
+    assert abs(found - factor * (of_large - of_small)) <= Fraction(1e-30) * factor * (
+        of_large + of_small)
+
+
+@pytest.mark.parametrize('size', [1e-249, 1e-100, 1e-71, 1e-69, 1.0, 1e69, 1e71, 1e100, 1.7e308])
+@pytest.mark.parametrize('place', range(3))
+def test_rates_are_scaled_by_powers_of_two_where_their_squares_would_leave_doubles(size, place):
+    omega = [0.3 * size, 0.3 * size, 0.3 * size]
+    omega[place] = -size
+    scale, unscale = anchors._units(tuple(omega))
+    assert scale * unscale == 1.0
+    assert math.frexp(scale)[0] == 0.5
+    assert 1e-150 < (scale * size) ** 2 < 1e150
+
+
+def test_a_body_that_does_not_turn_in_all_time_is_taken_as_one_at_rest():
+    assert anchors._units((1e-251, -1e-251, 0.0)) == (0.0, 1.0)
