@@ -39,6 +39,7 @@ def begun(monkeypatch, one, first=0, stop=None):
     assert len(set(seen)) == len(seen)
     refused = {first + k for k in np.flatnonzero(block.arrays['status'] == REFUSED).tolist()}
     assert refused >= set(block.texts)
+    assert {len(array) for array in block.arrays.values()} == {block.size}
     return starts, together, block.texts
 
 
@@ -74,6 +75,14 @@ def test_a_part_of_the_runs_starts_as_the_whole(monkeypatch):
     starts, _, _ = begun(monkeypatch, one, 6, 19)
     assert sorted(starts) == list(range(6, 19))
     assert all((start == one.scene_of(run).initial.vector).all() for run, start in starts.items())
+
+
+def test_a_sample_is_refused_for_one_component_that_is_too_large(monkeypatch):
+    one = plan(sample={'runs': 40, 'initial.velocity': {'direction': 1.2e75}})
+    large = (np.abs(one.values(0, 40)['initial.velocity']) > 1e75).any(axis=1)
+    _, together, texts = begun(monkeypatch, one)
+    assert sorted(texts) == np.flatnonzero(large).tolist()
+    assert together == [40 - large.sum()] and 0 < large.sum() < 40    # 26
 
 
 @pytest.mark.parametrize('wrong', [

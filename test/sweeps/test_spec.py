@@ -154,3 +154,18 @@ def test_a_spec_is_made_again_of_its_text():
             == one.sample['initial.orientation'].of_runs(0, 4)).all()
     changed = fingerprint(spec(accuracy=1e-8))
     assert {word for word in changed if changed[word] != fingerprint(spec())[word]} == {'accuracy'}
+
+
+def height(run):
+    return run.states.position[-1, 2]
+
+
+def test_a_function_is_carried_to_workers_unless_they_find_it_by_its_name():
+    for keep in ([{'function': height}], [{'function': height}, 'final'], ['final', {
+            'function': height}], {'function': height}):
+        one = spec(keep=keep)
+        [name] = one.functions
+        assert one.carried == {name: height}
+        assert again(one.text, one.carried).carried == {name: height}
+    named = spec(keep=['final', {'function': 'math:sqrt'}])
+    assert (list(named.functions), named.carried) == (['math:sqrt'], {})
