@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
-from rigid_body_sim.recording import packets
+from rigid_body_sim.recording import packets, resume
 from rigid_body_sim.recording.mcap.writing import McapFile
 from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.process import RecorderProcess
@@ -270,6 +270,15 @@ def test_successor_believes_the_sender_where_the_last_file_says_nothing(tmp_path
     assert reports[-1].acknowledged == 2**32 + 6
     assert reports[-1].dropped == 4
     assert recorded(tmp_path / 'bag')[:2] == ([0, 6], [8])      # MCAP has 32 bits for it
+
+
+@pytest.mark.parametrize(('known', 'found', 'later'), [
+    (5, 5, 5), (5, 6, 6), (6, 5, 6), (0, 2 ** 31 - 1, 2 ** 31 - 1), (0, 2 ** 31, 0),
+    (2 ** 32 - 1, 0, 2 ** 32), (2 ** 32, 2 ** 32 - 1, 2 ** 32), (2 ** 32 + 7, 9, 2 ** 32 + 9),
+    (2 ** 33, 2 ** 31 - 1, 2 ** 33 + 2 ** 31 - 1), (2 ** 33, 2 ** 31, 2 ** 33)])
+def test_of_a_number_the_lowest_32_bits_are_in_the_file(known, found, later):
+    """What seems half a turn ahead or more is behind."""
+    assert resume._later(known, found) == later
 
 
 def test_deleted_recording_cannot_be_resumed(tmp_path):
