@@ -86,6 +86,8 @@ def test_states_are_those_of_stamps_that_both_topics_have(tmp_path):
     about = {'topics': '{"pose": "/at", "angular_velocity": "/turn", "odom": 3}'}
     with Recording(bag(tmp_path / 'a', entries, about)) as recording:
         states = recording.states()
+        for alone in (5, 12):    # one of them has messages in this interval, the other none
+            assert len(recording.states(start=START + alone, end=START + alone)) == 0
     assert states.time.tolist() == [0.0, 5e-9, 6e-9]
     assert states.position[:, 1].tolist() == [3.0, 8.0, 9.0]
     assert states.angular_velocity[:, 2].tolist() == [-3.0, -8.0, -9.0]
