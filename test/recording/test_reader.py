@@ -60,6 +60,7 @@ def test_columns_are_the_numbers_that_were_written(recording):
             '/scene': 1,
             '/journal': 1,
         }
+        assert repr(opened) == f'Recording({str(recording)!r}: 4002 messages, 0.999 s)'
     assert list(pose) == [
         'log_time',
         'publish_time',

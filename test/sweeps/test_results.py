@@ -96,6 +96,21 @@ def test_an_energy_is_kept_beside_what_needs_none(keep):
         energy.max(axis=1), rel=1e-14)
 
 
+def test_residuals_are_those_of_the_last_time(monkeypatch):
+    one, seen = plan(['residuals']), []
+    states = some_states(one)
+
+    def residuals(scene, choice, starts, ends, time):
+        seen.append(time)
+        assert (starts == states[:, 0]).all() and (ends == states[:, 2]).all()
+        return [{'energy_residual': float(k), 'momentum_residual': -float(k)} for k in range(4)]
+    monkeypatch.setattr(results, '_residuals', residuals)
+    arrays = kept(one, states).arrays
+    assert seen == [4.0]
+    assert arrays['energy_residual'].tolist() == [0.0, 1.0, 2.0, 3.0]
+    assert arrays['momentum_residual'].tolist() == [0.0, -1.0, -2.0, -3.0]
+
+
 def test_some_runs_of_a_block_are_kept_at_their_places():
     one = plan(['final', {'minimum': 'speed'}])
     states = some_states(one)[:2]
