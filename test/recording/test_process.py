@@ -8,6 +8,7 @@ import dataclasses
 import errno
 import json
 import os
+import select
 
 import numpy as np
 import pytest
@@ -211,6 +212,7 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
     )
     assert code == 0
     assert (reports[-1].dropped, reports[-1].closed) == (2 + 2 + 10 + 4, True)
+    assert reports[-1].state_wanted == 1 + 4    # at the start of the file, and after each gap
     assert recorded(tmp_path / 'bag') == (
         [1],
         [2, 3, 4, 7, 8, 9, 20],
@@ -218,7 +220,8 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
     )
 
 
-def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path):
+@pytest.mark.parametrize(('sent', 'dropped'), [(8, 5), (3, 0), (2, 0)])
+def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path, sent, dropped):
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = setup(tmp_path / 'bag') + ticks(0, 3)
     process._take_packets()
@@ -226,10 +229,31 @@ def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path):
     def full(*arguments):
         raise OSError(errno.ENOSPC, 'No space left on device')
     process._writer.message = process._writer.flush = full
-    process._buffer = end(8)
+    process._buffer = end(sent)
     process._take_packets()
-    assert 'No space left' in process.report.error
-    assert process.report.dropped == 5
+    assert ('No space left' in process.report.error) == (dropped > 0)
+    assert process.report.dropped == dropped
+    process._writer.close = full
+    assert process._close() == 1
+    assert process.report.error.endswith('left on device; not closed, "recover" makes it whole '
+                                         'once there is room')
+    assert not process.report.closed
+
+
+def test_without_a_packet_nothing_is_recorded():
+    assert run() == (2, [])
+
+
+def test_a_report_begins_with_nothing_done():
+    told = dataclasses.asdict(Report())
+    assert told.pop('error') == '' and told.pop('refused') == ()
+    assert set(told.values()) == {0}
+    report = Report(3, 4, 5, 6, 7, 8, 9, 10, 'full', ['a', 'b', 'c'], True)
+    assert Report.of(report.line()) == report and report.line().count(b'\n') == 1
+
+
+def test_as_much_as_a_pipe_takes_at_once():
+    assert packets.ATOMIC == select.PIPE_BUF
 
 
 def _die_after(path, *sent):
