@@ -9,12 +9,14 @@ import errno
 import json
 import os
 import select
+import types
 
 import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
 from rigid_body_sim.recording import packets, resume
+from rigid_body_sim.recording import process as module
 from rigid_body_sim.recording.mcap.writing import McapFile
 from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.process import RecorderProcess
@@ -144,6 +146,60 @@ def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
     assert reports[-1].resend == reports[0].resend + 1      # asked once, though two came too early
     run(setup(tmp_path / 'again'), *map(message, (1, 3, 2, 3)))
     assert recorded(tmp_path / 'again')[0] == [1, 2, 3]
+
+
+def clock_of(monkeypatch):
+    """Return [now] of a clock that goes on while the process sleeps, and how often it did."""
+    clock, slept = [100.0], []
+
+    def sleep(seconds):
+        slept.append(seconds)
+        clock[0] += seconds
+    monkeypatch.setattr(module, 'time', types.SimpleNamespace(
+        monotonic=lambda: clock[0], sleep=sleep))
+    return clock, slept
+
+
+def test_missing_messages_are_asked_for_again_after_a_while(tmp_path, monkeypatch):
+    clock, _ = clock_of(monkeypatch)
+    process = RecorderProcess(-1, lambda line: True)
+
+    def asked(*sent):
+        process._buffer = b''.join(sent)
+        process._take_packets()
+        return process.report.resend
+    begun = asked(setup(tmp_path / 'bag'))
+    assert asked(message(3), message(4)) == begun + 1
+    clock[0] += 0.9 * module.RETRY
+    assert asked(message(5)) == begun + 1
+    clock[0] += 0.2 * module.RETRY
+    assert asked(message(6), message(7)) == begun + 2
+    assert asked(message(1), message(3)) == begun + 3    # another one is missing
+    process._close()
+
+
+@pytest.mark.parametrize(('full', 'least', 'most'), [(False, 16, 20), (True, 3, 4)])
+def test_what_came_is_in_the_file_after_a_tenth_of_a_second(
+        tmp_path, monkeypatch, full, least, most):
+    """In two seconds without a packet; a disk that refuses is tried twice a second."""
+    clock, slept = clock_of(monkeypatch)
+    process = RecorderProcess(-1, lambda line: True)
+    process._buffer = setup(tmp_path / 'bag') + message(1)
+    process._take_packets()
+    tries, flush = [], process._writer.flush
+
+    def flushes():
+        tries.append(clock[0])
+        if full and clock[0] < 102.0:
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        flush()
+    process._writer.flush = flushes
+    process._read = lambda: None if clock[0] < 102.0 else b''
+    assert process.run() == 0
+    in_time = [time for time in tries if time < 102.0]
+    assert len(slept) in (100, 101)    # 50 looks a second
+    assert least <= len(in_time) <= most
+    assert process.report.acknowledged == 1
 
 
 def recorded_commands(path):

@@ -12,12 +12,14 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.sweeps import runs
 from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps.plan import GAVE_UP, REFUSED, Plan
+from rigid_body_sim.sweeps.results import Block
 
 HALF = math.sqrt(0.5)
 NEARLY = [[0.0, 0.0, 0.0, 1.0 + k * 2.0 ** -53] for k in (-4, -3, -2, -1, 2, 4)]
 """Beside 1: a norm whose square is within two ulps of 1 stays as it is."""
 TURNS = [[0.0, 0.0, 0.0, 1.0], [0.0, 3.0, 0.0, 4.0], [1.0, -2.0, 3.0, 0.5], [HALF, 0.0, HALF, 0.0],
-         [1e-90, 2e-90, 0.0, 0.0], [3e-101, 0.0, 4e-101, 0.0], [0.0, 1e70, -1e70, 0.0], *NEARLY]
+         [1e-90, 2e-90, 0.0, 0.0], [3e-101, 0.0, 9e-101, 0.0], [1e-100, 0.0, 3e-101, 0.0],
+         [0.0, 1e70, -1e70, 0.0], *NEARLY]
 
 
 def plan(vary=None, sample=None, scene='tennis_racket', **more):
@@ -44,7 +46,7 @@ def begun(monkeypatch, one, first=0, stop=None):
 
 
 @pytest.mark.parametrize(('given', 'refused', 'together'), [
-    ({'vary': {'initial.orientation': TURNS}}, [], [1, 12]),    # a tiny one is scaled by itself
+    ({'vary': {'initial.orientation': TURNS}}, [], [1, 1, 12]),    # tiny ones are scaled
     ({'vary': {'initial.orientation': [TURNS[1], [0.0] * 4, [0, 0, 1e80, 0], TURNS[2]]}},
      [1, 2], [2]),
     ({'vary': {'initial.spin': [3.0, -4.0, 1e76, 0.5]}}, [2], [3]),
@@ -130,6 +132,38 @@ def test_runs_of_a_group_that_a_method_gives_up_fail_alone(monkeypatch):
     assert {run: text[:9] for run, text in block.texts.items()} == {
         3: 'too fast', 4: 'too fast', 13: 'too fast', 17: 'mass: got'}
     assert sizes == [18, 9, 5, 3, 2, 1, 1, 4, 9, 5, 3, 2, 1, 1, 4, 1, 1, 1, 1]
+
+
+@pytest.mark.parametrize(('wants', 'goes_on'), [
+    ({'final'}, False), ({'first'}, True), ({'all', 'final'}, True), ({'residuals'}, True)])
+def test_runs_with_strikes_are_simulated_one_by_one(monkeypatch, wants, goes_on):
+    """To the last time, the tick 1500 of 1000 a second, where more than states is kept."""
+    advanced, kept, failed = [], [], []
+
+    def simulation_of(plan, run):
+        if run == 6:
+            raise NotConverged('too fast')
+        vector = np.full(14, float(run))
+        return types.SimpleNamespace(
+            states=lambda times: types.SimpleNamespace(vector=np.array([vector, 2.0 * vector])),
+            rate=1000.0, advance=lambda ticks: advanced.append((run, ticks)), choice=f'of {run}',
+            events=[f'event {run}'],
+            scene=types.SimpleNamespace(initial=types.SimpleNamespace(vector=vector)))
+    monkeypatch.setattr(runs, 'simulation_of', simulation_of)
+    runs._Work.struck(types.SimpleNamespace(
+        plan=types.SimpleNamespace(spec=types.SimpleNamespace(times=[0.5, 1.5]), wants=wants),
+        block=Block(5, 8, {}, {}, {}), results=types.SimpleNamespace(
+            fail=lambda *told: failed.append((*told[:2], str(told[2]))),
+            keep=lambda *told: kept.append(told))), slice(0, 3))
+    assert failed == [(slice(1, 2), GAVE_UP, 'too fast')]
+    assert advanced == ([(5, 1500), (7, 1500)] if goes_on else [])
+    for run, (_, choice, starts, states, events, where, simulation) in zip(
+            (5, 7), kept, strict=True):
+        assert (choice, events, where) == (
+            f'of {run}', [[f'event {run}']], slice(run - 5, run - 4))
+        assert starts.tolist() == [[float(run)] * 14]
+        assert states.tolist() == [[[float(run)] * 14, [2.0 * run] * 14]]
+        assert simulation.choice == choice
 
 
 def test_states_of_many_runs_are_computed_in_pieces(monkeypatch):
