@@ -93,9 +93,9 @@ def test_commands_resets_and_other_simulations_are_recorded_at_the_present_tick(
     recorded.commands(rows)
     recorded.commands(rows[:0])
     recorded.reset()
-    other = Simulation('heavy_top', rate=100.0)
+    other = Simulation('tennis_racket', rate=100.0, overrides={'body.mass': 2.0})
     other.follow(simulation, keep_state=False)
-    recorded.switch(other, {'scene': 'heavy_top'})
+    recorded.switch(other, {'scene': 'heavier'})
     recorded.ticks(4, other.advance_through(2))
     recorded.close()
     with Recording(recorded._writer.path) as recording:
@@ -106,6 +106,7 @@ def test_commands_resets_and_other_simulations_are_recorded_at_the_present_tick(
         scenes = [message['data'] for _, message in recording.decoded('/scene')]
         assert recording.commands()['force'].tolist() == [[1.0, 2.0, 3.0], [0.0] * 3]
     assert scenes == [simulation.scene.text, other.scene.text]
+    assert scenes[0] != scenes[1]
     assert entries['reset']['tick'] == entries['parameters']['tick'] == 3
     assert entries['parameters']['keeps_state'] is False
     assert entries['parameters']['scene'] == other.scene.text

@@ -43,7 +43,7 @@ def test_blocks_that_are_written_one_by_one_are_read_as_a_whole(tmp_path, kind):
     one = plan()
     arrays, texts = numbered(one)
     store = stores.store_at(tmp_path / f'a.{kind}')
-    layout = store.make(one, 2)
+    layout = store.make(one, 4)
     assert layout.blocks > 3
     for number in reversed(range(layout.blocks)):
         assert store.done(layout).tolist() == [k > number for k in range(layout.blocks)]
