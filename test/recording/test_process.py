@@ -274,6 +274,10 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
         [2, 3, 4, 7, 8, 9, 20],
         [(2, 0, 2), (2, 4, 7), (10, 9, 20), (4, 20, None)],
     )
+    with Recording(tmp_path / 'bag') as recording:
+        told = [one.publish_time for one in recording.messages(['/journal']) if b'gap' in one.data]
+    # a gap is known when the tick after it comes, or the end
+    assert told == [*(Ticks(tick, 1).wall_clock[0] for tick in (2, 7, 20)), START + 20 * 10**6]
 
 
 @pytest.mark.parametrize(('sent', 'dropped'), [(8, 5), (3, 0), (2, 0)])
