@@ -50,13 +50,18 @@ def newest_recording(path):
         return path, 0
     try:
         found = sorted((one for one in path.iterdir() if one.is_dir() and _is_recording(one)),
-                       key=lambda one: max(file.stat().st_mtime for file in one.glob('*.mcap')))
+                       key=_last_written)
     except OSError as error:
         raise BadInput(str(path), f'cannot be read ({error.strerror})',
                        'a recording, or a folder of recordings') from error
     if not found:
         raise BadInput(str(path), 'holds no recording', 'a recording, or a folder of recordings')
     return found[-1], len(found) - 1
+
+
+def _last_written(folder):
+    # a recording in another format has no such file
+    return max((file.stat().st_mtime for file in folder.glob('*.mcap')), default=0.0)
 
 
 def _is_recording(folder):

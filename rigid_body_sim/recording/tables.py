@@ -20,7 +20,7 @@ def flat(columns, components):
     made = {}
     for name, column in columns.items():
         if column.dtype.kind == 'S':
-            made[name] = np.char.decode(column, errors='replace')
+            made[name] = np.char.decode(column, 'utf-8', 'replace')
         elif column.ndim == 1:
             made[name] = column
         else:
@@ -34,7 +34,7 @@ def dataset(xarray, columns, components, start):
     variables, coordinates = {}, {'time': seconds(columns['log_time'], start)}
     for name, column in columns.items():
         if column.dtype.kind == 'S':
-            column = np.char.decode(column, errors='replace')
+            column = np.char.decode(column, 'utf-8', 'replace')
         dimensions = ('time',)
         if column.ndim > 1:
             dimensions = ('time', f'{name}.component')

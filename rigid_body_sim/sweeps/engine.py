@@ -125,7 +125,7 @@ def run(workers, pieces, submit, take, window):
     Stopped, BadInput, KeyboardInterrupt
         Running pieces are waited for and taken first, so that none is lost.
     """
-    pending = set()
+    pending, finished = set(), set()
     try:
         while True:
             for piece in itertools.islice(pieces, max(0, window() - len(pending))):
@@ -136,14 +136,14 @@ def run(workers, pieces, submit, take, window):
                 pending, PATIENCE, concurrent.futures.FIRST_COMPLETED)
             if not finished:
                 workers.check()
-            for future in finished:
-                take(_result(future))
+            while finished:
+                take(_result(finished.pop()))
     except BaseException:
         for future in pending:
             future.cancel()
         # a second Ctrl-C ends this wait
-        finished, _ = concurrent.futures.wait(pending, 30.0)
-        for future in finished:
+        more, _ = concurrent.futures.wait(pending, 30.0)
+        for future in finished | more:
             if not future.cancelled() and future.exception() is None:
                 with contextlib.suppress(OSError):
                     take(future.result())

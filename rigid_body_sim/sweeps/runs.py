@@ -121,15 +121,18 @@ class _Work:
         good = True
         for key, part in self.plan.direct.items():
             values = self.values[key]
-            values = values[where] if isinstance(values, np.ndarray) else \
-                np.array([values[k] for k in self.block.places(where)], dtype=float)
-            values = values.reshape(count, -1)
+            if isinstance(values, np.ndarray):
+                values = values[where].reshape(count, -1)
+            else:
+                width = 1 if key == plans.SPIN else part.stop - part.start
+                values, rows = _rows([values[k] for k in self.block.places(where)], width)
+                good = good & rows
+            good = good & (np.abs(values) <= LARGEST).all(axis=1)    # a scene takes no others
             if key == plans.SPIN:
-                values = values * (0.0, 0.0, 1.0)
+                values = np.concatenate([np.zeros((count, 2)), values], axis=1)
             elif part == ORIENTATION:
                 values, unit = _units(values)
                 good = good & unit
-            good = good & (np.abs(values) <= LARGEST).all(axis=1)    # a scene takes no others
             starts[:, part] = values
         if not np.all(good):
             places = self.block.places(where)
@@ -205,6 +208,23 @@ def _slice_of(places):
     return slice(first, last + 1) if last - first + 1 == len(places) else places
 
 
+def _rows(values, width):
+    """Return a list of values as an array (n, width), and which of them are so many numbers.
+
+    The others are zero there: what a scene says of them is left to it.
+    """
+    rows, good = np.zeros((len(values), width)), np.zeros(len(values), bool)
+    for k, value in enumerate(values):
+        value = value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+        row = value if isinstance(value, list) and width > 1 else [value]
+        # a whole number may be beyond the largest double
+        good[k] = len(row) == width and all(
+            type(one) in (int, float) and -LARGEST <= one <= LARGEST for one in row)
+        if good[k]:
+            rows[k] = row
+    return rows, good
+
+
 def _units(values):
     """Return quaternions as scene.initial.unit_quaternion does, and which of them have a norm."""
     x, y, z, w = values.T
@@ -214,6 +234,6 @@ def _units(values):
         if unit.all():
             return values, True
         size = np.abs(values).max(axis=1)
-        good = (size > 1e-100) & (size < 1e100)    # the others are scaled first: one by one
+        good = size > 1e-100    # the others are scaled first: one by one
         divisor = np.where(unit, 1.0, np.sqrt(square))
         return values / divisor[:, np.newaxis], good

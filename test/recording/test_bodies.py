@@ -54,7 +54,66 @@ def test_states_of_an_interval_keep_their_times(flight):
         whole = recording.states()
         some = recording.states(start=recording.start_time + 2 * 10**9,
                                 end=recording.start_time + 3 * 10**9)
+        none = recording.states(start=recording.end_time + 1)
     np.testing.assert_array_equal(some.vector[:, 0], whole.vector[200:301, 0])
+    assert none.vector.shape == (0, 14)
+
+
+def bag(path, entries, about=None):
+    """Make a recording of messages: (topic, type, log time since START, values)."""
+    types = {name: kind for name, kind, _, _ in entries}
+    with Writer(path, [], [Topic(name, kind) for name, kind in types.items()], journal_topic(),
+                about or {}) as writer:
+        for name, kind, time, values in entries:
+            if values is not None:
+                writer.message(name, START + time, START + time, cdr.encode(kind, values))
+    return path
+
+
+POSE, TURN = 'geometry_msgs/msg/PoseStamped', 'geometry_msgs/msg/Vector3Stamped'
+
+
+def stamped(time, **values):
+    return {'header': {'stamp': {'sec': 100, 'nanosec': time}}, **values}
+
+
+def test_states_are_those_of_stamps_that_both_topics_have(tmp_path):
+    """The only body's topics were renamed; one of pose and of angular_velocity is missing."""
+    entries = [(name, kind, time, stamped(time, **values(time))) for name, kind, times, values in (
+        ('/at', POSE, (3, 5, 8, 9), lambda time: {'pose': {'position': {'y': float(time)}}}),
+        ('/turn', TURN, (3, 8, 9, 12), lambda time: {'vector': {'z': -float(time)}}))
+        for time in times]
+    about = {'topics': '{"pose": "/at", "angular_velocity": "/turn", "odom": 3}'}
+    with Recording(bag(tmp_path / 'a', entries, about)) as recording:
+        states = recording.states()
+        for alone in (5, 12):    # one of them has messages in this interval, the other none
+            assert len(recording.states(start=START + alone, end=START + alone)) == 0
+    assert states.time.tolist() == [0.0, 5e-9, 6e-9]
+    assert states.position[:, 1].tolist() == [3.0, 8.0, 9.0]
+    assert states.angular_velocity[:, 2].tolist() == [-3.0, -8.0, -9.0]
+    assert np.isnan(states.velocity).all()
+    for topics in ('[]', '{', '{"pose": 3}'):
+        with Recording(bag(tmp_path / f'b{len(topics)}', entries, {'topics': topics})) as one, \
+                pytest.raises(BadInput, match='were not both recorded'):
+            one.states()
+
+
+def test_a_topic_without_a_message_or_of_another_type_was_not_recorded(tmp_path):
+    entries = [('/pose', POSE, 0, stamped(0)), ('/angular_velocity', TURN, 0, None),
+               ('/events', 'std_msgs/msg/String', 0, {'data': 'flip'})]
+    with Recording(bag(tmp_path / 'a', entries)) as recording:
+        with pytest.raises(BadInput, match='were not both recorded'):
+            recording.states()
+        assert recording.events() == []
+
+
+def test_the_scene_is_that_of_the_journal_or_else_the_latched_one(tmp_path):
+    texts = [load_scene(name).text for name in ('tennis_racket', 'heavy_top')]
+    entries = [('/scene', 'std_msgs/msg/String', 0, {'data': texts[0]})]
+    for about, name in (({'scene': texts[1]}, 'heavy_top'), ({}, 'tennis_racket'),
+                        ({'scene': ''}, 'tennis_racket')):
+        with Recording(bag(tmp_path / f'a{len(about)}{name}', entries, about)) as recording:
+            assert recording.scene().name == name
 
 
 def test_velocity_comes_from_odom_turned_into_the_world(tmp_path):
@@ -137,6 +196,28 @@ def test_without_a_journal_commands_are_the_messages_themselves(theirs):
         'force': [[1.0, 0.0, -2.0]], 'torque': [[0.0, 0.0, 0.0]]}
 
 
+def test_commands_of_both_topics_come_in_the_order_of_time(tmp_path):
+    path = tmp_path / 'two.mcap'
+    with open(path, 'wb') as stream:
+        writer = TheirWriter(stream)
+        writer.start('ros2', 'theirs')
+        pose = writer.register_schema(POSE, 'ros2msg', definition(POSE).text.encode())
+        kind = writer.register_schema(WRENCH, 'ros2msg', definition(WRENCH).text.encode())
+        channels = {name: writer.register_channel(name, 'cdr', schema) for name, schema in (
+            ('/pose', pose), ('/cmd_impulse', kind), ('/cmd_wrench', kind))}
+        for name, time in (('/cmd_impulse', 5), ('/cmd_wrench', 3), ('/cmd_impulse', 1),
+                           ('/cmd_wrench', 7)):
+            writer.add_message(channels[name], START + time, cdr.encode(
+                WRENCH, {'wrench': {'torque': {'y': float(time)}}}), START)
+        writer.finish()
+    with Recording(path) as recording:
+        commands = recording.commands()
+    assert (commands['log_time'] - START).tolist() == [1, 3, 5, 7]
+    assert commands['topic'].tolist() == ['cmd_impulse', 'cmd_wrench'] * 2
+    assert commands['torque'].tolist() == [[0.0, time, 0.0] for time in (1.0, 3.0, 5.0, 7.0)]
+    assert commands['force'].shape == (4, 3)
+
+
 def test_foreign_topics_are_read_by_their_recorded_definition(theirs):
     with Recording(theirs) as recording:
         assert repr(recording.topics['/scan']) == '<1 messages their_msgs/msg/Scan>'
@@ -175,6 +256,10 @@ def test_a_topic_as_xarray(flight):
     turned = found['pose.orientation'].sel({'pose.orientation.component': 'w'})
     np.testing.assert_array_equal(turned, pose['pose.orientation'][:, 3])
     assert found['time'].attrs['units'] == 's'
+    np.testing.assert_allclose(found['time'], np.arange(1001) / 100, atol=1e-9)
+    assert found['pose.orientation'].dims == ('time', 'pose.orientation.component')
+    assert found['header.frame_id'].dims == ('time',)
+    assert set(found['header.frame_id'].values.tolist()) == {'world'}
 
 
 @pytest.mark.parametrize('name', ['pandas', 'xarray'])

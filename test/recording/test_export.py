@@ -10,14 +10,17 @@ import shutil
 
 import numpy as np
 import pytest
-from recording.conftest import START, Ticks, write
+from recording.conftest import JOURNAL, START, Ticks, write
 from tqdm import tqdm
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import cdr
 from rigid_body_sim.recording import export as module
 from rigid_body_sim.recording.export import export, main
 from rigid_body_sim.recording.folders import newest_recording
 from rigid_body_sim.recording.tables import Joined
+from rigid_body_sim.recording.topics import Topic
+from rigid_body_sim.recording.writer import Writer
 
 NAMES = ['seconds', 'log_time', 'publish_time', 'sequence', 'header.stamp', 'header.frame_id',
          'pose.position.x', 'pose.position.y', 'pose.position.z', 'pose.orientation.x',
@@ -112,15 +115,61 @@ def test_numpy_opens_mapped_with_named_columns(tmp_path, recording):
     assert set(table['header.frame_id']) == {'world'}
 
 
-def test_parquet_is_read_by_pyarrow(tmp_path, recording, monkeypatch):
+@pytest.mark.parametrize('group', [201, 300])
+def test_parquet_is_read_by_pyarrow(tmp_path, recording, monkeypatch, group):
     parquet = pytest.importorskip('pyarrow.parquet')
-    monkeypatch.setattr(module.ParquetTable, '_GROUP', 300)
+    monkeypatch.setattr(module.ParquetTable, '_GROUP', group)
     export(recording, tmp_path / 'out', 'parquet', ['/pose', '/energy'])
     table = parquet.read_table(tmp_path / 'out' / 'pose.parquet')
     assert table.column_names == NAMES
     np.testing.assert_array_equal(
         table['pose.orientation.x'].to_numpy(), Ticks(0, 1000).orientation[:, 0]
     )
+    # a chunk of the recording has 100 rows; three are the first to reach the size of a group
+    file = parquet.ParquetFile(tmp_path / 'out' / 'pose.parquet').metadata
+    assert [file.row_group(k).num_rows for k in range(file.num_row_groups)] == [300] * 3 + [100]
+
+
+def test_numpy_takes_texts_of_64_letters_and_headers_that_fit(tmp_path):
+    """The format wants the data at a multiple of 64 bytes (numpy.lib.format)."""
+    texts = np.array(['a' * 64, 'b'])
+    table = module.NumpyTable(tmp_path / 'a.npy')
+    table.add({'text': texts, 'x': np.array([1.0, 2.0])})
+    table.add({'text': np.array(['c']), 'x': np.array([3.0])})
+    table.close()
+    found = np.load(tmp_path / 'a.npy')
+    assert found['text'].tolist() == [*texts, 'c'] and found['x'].tolist() == [1.0, 2.0, 3.0]
+    assert ((tmp_path / 'a.npy').stat().st_size - found.nbytes) % 64 == 0
+    table = module.NumpyTable(tmp_path / 'b.npy')
+    with pytest.raises(BadInput, match='numpy: text: a text of more than 64 letters'):
+        table.add({'text': np.array(['a' * 65])})
+    table.close()
+    table = module.NumpyTable(tmp_path / 'c.npy')
+    table.add({f'{k:040d}': np.array([1.0]) for k in range(100)})
+    with pytest.raises(BadInput, match='numpy: 100 columns; a topic with fewer'):
+        table.close()
+
+
+def test_only_what_was_recorded_at_every_tick_is_joined(tmp_path):
+    energy = 'std_msgs/msg/Float64'
+    for name, topics, written in (
+            ('a', {'/a': 3, '/b': 3, '/c': 2, '/d': 0}, {'a', 'b', 'c', 'ticks'}),
+            ('b', {'/a': 3, '/ticks': 3}, {'a', 'ticks'}), ('c', {'/a': 3, '/b': 2}, {'a', 'b'})):
+        with Writer(tmp_path / name, [], [Topic(topic, energy) for topic in topics], JOURNAL,
+                    {}) as writer:
+            for k in range(3):
+                for topic, count in topics.items():
+                    if k < count:
+                        writer.message(topic, START + k, START, cdr.encode(
+                            energy, {'data': float(k)}))
+        paths = export(tmp_path / name, tmp_path / f'{name}_out', 'numpy')
+        assert {path.stem for path in paths} == written | {'journal'}
+        assert {path.name for path in paths} == {
+            path.name for path in (tmp_path / f'{name}_out').iterdir()}
+    joined = np.load(tmp_path / 'a_out' / 'ticks.npy')
+    assert [name for name in joined.dtype.names if name.endswith('data')] == ['a.data', 'b.data']
+    # a topic of that name is what it is
+    assert 'data' in np.load(tmp_path / 'b_out' / 'ticks.npy').dtype.names
 
 
 def test_parquet_without_pyarrow_says_what_to_do(tmp_path, recording, monkeypatch, capsys):

@@ -8,12 +8,15 @@ import dataclasses
 import errno
 import json
 import os
+import select
+import types
 
 import numpy as np
 import pytest
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
-from rigid_body_sim.recording import packets
+from rigid_body_sim.recording import packets, resume
+from rigid_body_sim.recording import process as module
 from rigid_body_sim.recording.mcap.writing import McapFile
 from rigid_body_sim.recording.packets import Report
 from rigid_body_sim.recording.process import RecorderProcess
@@ -145,6 +148,60 @@ def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
     assert recorded(tmp_path / 'again')[0] == [1, 2, 3]
 
 
+def clock_of(monkeypatch):
+    """Return [now] of a clock that goes on while the process sleeps, and how often it did."""
+    clock, slept = [100.0], []
+
+    def sleep(seconds):
+        slept.append(seconds)
+        clock[0] += seconds
+    monkeypatch.setattr(module, 'time', types.SimpleNamespace(
+        monotonic=lambda: clock[0], sleep=sleep))
+    return clock, slept
+
+
+def test_missing_messages_are_asked_for_again_after_a_while(tmp_path, monkeypatch):
+    clock, _ = clock_of(monkeypatch)
+    process = RecorderProcess(-1, lambda line: True)
+
+    def asked(*sent):
+        process._buffer = b''.join(sent)
+        process._take_packets()
+        return process.report.resend
+    begun = asked(setup(tmp_path / 'bag'))
+    assert asked(message(3), message(4)) == begun + 1
+    clock[0] += 0.9 * module.RETRY
+    assert asked(message(5)) == begun + 1
+    clock[0] += 0.2 * module.RETRY
+    assert asked(message(6), message(7)) == begun + 2
+    assert asked(message(1), message(3)) == begun + 3    # another one is missing
+    process._close()
+
+
+@pytest.mark.parametrize(('full', 'least', 'most'), [(False, 16, 20), (True, 3, 4)])
+def test_what_came_is_in_the_file_after_a_tenth_of_a_second(
+        tmp_path, monkeypatch, full, least, most):
+    """In two seconds without a packet; a disk that refuses is tried twice a second."""
+    clock, slept = clock_of(monkeypatch)
+    process = RecorderProcess(-1, lambda line: True)
+    process._buffer = setup(tmp_path / 'bag') + message(1)
+    process._take_packets()
+    tries, flush = [], process._writer.flush
+
+    def flushes():
+        tries.append(clock[0])
+        if full and clock[0] < 102.0:
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        flush()
+    process._writer.flush = flushes
+    process._read = lambda: None if clock[0] < 102.0 else b''
+    assert process.run() == 0
+    in_time = [time for time in tries if time < 102.0]
+    assert len(slept) in (100, 101)    # 50 looks a second
+    assert least <= len(in_time) <= most
+    assert process.report.acknowledged == 1
+
+
 def recorded_commands(path):
     """Return the forces of recorded impulses, and those in the journal, tick by tick."""
     with Recording(path) as recording:
@@ -211,14 +268,20 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
     )
     assert code == 0
     assert (reports[-1].dropped, reports[-1].closed) == (2 + 2 + 10 + 4, True)
+    assert reports[-1].state_wanted == 1 + 4    # at the start of the file, and after each gap
     assert recorded(tmp_path / 'bag') == (
         [1],
         [2, 3, 4, 7, 8, 9, 20],
         [(2, 0, 2), (2, 4, 7), (10, 9, 20), (4, 20, None)],
     )
+    with Recording(tmp_path / 'bag') as recording:
+        told = [one.publish_time for one in recording.messages(['/journal']) if b'gap' in one.data]
+    # a gap is known when the tick after it comes, or the end
+    assert told == [*(Ticks(tick, 1).wall_clock[0] for tick in (2, 7, 20)), START + 20 * 10**6]
 
 
-def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path):
+@pytest.mark.parametrize(('sent', 'dropped'), [(8, 5), (3, 0), (2, 0)])
+def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path, sent, dropped):
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = setup(tmp_path / 'bag') + ticks(0, 3)
     process._take_packets()
@@ -226,10 +289,31 @@ def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path):
     def full(*arguments):
         raise OSError(errno.ENOSPC, 'No space left on device')
     process._writer.message = process._writer.flush = full
-    process._buffer = end(8)
+    process._buffer = end(sent)
     process._take_packets()
-    assert 'No space left' in process.report.error
-    assert process.report.dropped == 5
+    assert ('No space left' in process.report.error) == (dropped > 0)
+    assert process.report.dropped == dropped
+    process._writer.close = full
+    assert process._close() == 1
+    assert process.report.error.endswith('left on device; not closed, "recover" makes it whole '
+                                         'once there is room')
+    assert not process.report.closed
+
+
+def test_without_a_packet_nothing_is_recorded():
+    assert run() == (2, [])
+
+
+def test_a_report_begins_with_nothing_done():
+    told = dataclasses.asdict(Report())
+    assert told.pop('error') == '' and told.pop('refused') == ()
+    assert set(told.values()) == {0}
+    report = Report(3, 4, 5, 6, 7, 8, 9, 10, 'full', ['a', 'b', 'c'], True)
+    assert Report.of(report.line()) == report and report.line().count(b'\n') == 1
+
+
+def test_as_much_as_a_pipe_takes_at_once():
+    assert packets.ATOMIC == select.PIPE_BUF
 
 
 def _die_after(path, *sent):
@@ -270,6 +354,15 @@ def test_successor_believes_the_sender_where_the_last_file_says_nothing(tmp_path
     assert reports[-1].acknowledged == 2**32 + 6
     assert reports[-1].dropped == 4
     assert recorded(tmp_path / 'bag')[:2] == ([0, 6], [8])      # MCAP has 32 bits for it
+
+
+@pytest.mark.parametrize(('known', 'found', 'later'), [
+    (5, 5, 5), (5, 6, 6), (6, 5, 6), (0, 2 ** 31 - 1, 2 ** 31 - 1), (0, 2 ** 31, 0),
+    (2 ** 32 - 1, 0, 2 ** 32), (2 ** 32, 2 ** 32 - 1, 2 ** 32), (2 ** 32 + 7, 9, 2 ** 32 + 9),
+    (2 ** 33, 2 ** 31 - 1, 2 ** 33 + 2 ** 31 - 1), (2 ** 33, 2 ** 31, 2 ** 33)])
+def test_of_a_number_the_lowest_32_bits_are_in_the_file(known, found, later):
+    """What seems half a turn ahead or more is behind."""
+    assert resume._later(known, found) == later
 
 
 def test_deleted_recording_cannot_be_resumed(tmp_path):

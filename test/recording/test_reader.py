@@ -2,6 +2,7 @@
 """Reading: our recordings and those of other writers, against mcap_ros2; files that lie."""
 
 import contextlib
+import inspect
 import os
 import random
 import resource
@@ -60,6 +61,7 @@ def test_columns_are_the_numbers_that_were_written(recording):
             '/scene': 1,
             '/journal': 1,
         }
+        assert repr(opened) == f'Recording({str(recording)!r}: 4002 messages, 0.999 s)'
     assert list(pose) == [
         'log_time',
         'publish_time',
@@ -428,3 +430,72 @@ def test_an_index_that_points_at_the_end_of_the_file_is_refused(tmp_path, record
         refused = pytest.raises(BadInput, match='an index that points at no chunk; an undamaged')
         with Recording(tmp_path / 'x.mcap') as opened, refused:
             list(opened.messages())
+
+
+def test_all_messages_are_read_unless_an_interval_is_given(tmp_path):
+    """Also those of the first and the last time that there is."""
+    types = {'/pose': 'geometry_msgs/msg/PoseStamped',
+             '/angular_velocity': 'geometry_msgs/msg/Vector3Stamped'}
+    with open(tmp_path / 'x.mcap', 'wb') as stream:
+        writer = TheirWriter(stream)
+        writer.start('ros2', 'theirs')
+        for topic, kind in types.items():
+            schema = writer.register_schema(kind, 'ros2msg', definition(kind).text.encode())
+            channel = writer.register_channel(topic, 'cdr', schema)
+            for k, time in enumerate((0, 2**63 - 1)):
+                writer.add_message(channel, time, cdr.encode(
+                    kind, {'header': {'stamp': {'nanosec': k}}}), time)
+        writer.finish()
+    with Recording(tmp_path / 'x.mcap') as opened:
+        assert opened.read('/pose')['log_time'].tolist() == [0, 2**63 - 1]
+        assert sum(len(columns['log_time']) for _, columns in opened.blocks()) == 4
+        assert len(list(opened.messages())) == 4
+        assert len(list(opened.decoded('/pose'))) == 2
+        assert len(opened.states()) == 2
+    # the tables of other libraries, which take long to import, are of the same interval
+    for method in (Recording.to_pandas, Recording.to_xarray):
+        given = inspect.signature(method).parameters
+        assert (given['start'].default, given['end'].default) == (0, 2**63)
+
+
+@pytest.mark.parametrize(('start', 'end', 'count'), [
+    (99, 99, 1), (100, 100, 1), (99, 100, 2), (0, 99, 100), (100, 199, 100), (101, 198, 98)])
+def test_both_ends_of_an_interval_belong_to_it(recording, start, end, count):
+    """A chunk has 100 ticks."""
+    start, end = (START + tick * 10**6 for tick in (start, end))
+    with Recording(recording) as opened:
+        assert len(opened.read('/energy', None, start, end)['log_time']) == count
+        assert len(list(opened.messages(['/energy'], start, end))) == count
+        assert len(list(opened.decoded('/energy', start, end))) == count
+
+
+def test_messages_of_one_time_come_as_recorded_from_whatever_chunks(tmp_path):
+    _write_theirs(tmp_path / 'x.mcap', [(START, index) for index in range(60)], chunk_size=100)
+    with Recording(tmp_path / 'x.mcap') as opened:
+        assert len(opened._files[0].places()) > 5
+        assert [message.sequence for message in opened.messages()] == list(range(60))
+        assert opened.read('/x')['sequence'].tolist() == list(range(60))
+
+
+def test_columns_are_sorted_for_one_nanosecond(tmp_path):
+    _write_theirs(tmp_path / 'x.mcap', [(START + 1, 0), (START, 1), (START + 2, 2)])
+    with Recording(tmp_path / 'x.mcap') as opened:
+        assert opened.read('/x')['sequence'].tolist() == [1, 0, 2]
+
+
+def test_a_sequence_of_another_length_in_a_later_chunk_is_no_column(tmp_path):
+    joints = 'sensor_msgs/msg/JointState'
+    with open(tmp_path / 'x.mcap', 'wb') as stream:
+        writer = TheirWriter(stream, chunk_size=300)
+        writer.start('ros2', 'theirs')
+        schema = writer.register_schema(joints, 'ros2msg', definition(joints).text.encode())
+        channel = writer.register_channel('/x', 'cdr', schema)
+        for k in range(40):
+            writer.add_message(channel, START + k, cdr.encode(
+                joints, {'position': [1.0] * (1 + k // 20), 'velocity': [float(k)]}), START)
+        writer.finish()
+    with Recording(tmp_path / 'x.mcap') as opened:
+        found = opened.read('/x')
+        assert 'position' not in found
+        assert found['velocity'].tolist() == [[float(k)] for k in range(40)]
+        assert opened.read('/x', end=START + 9)['position'].shape == (10, 1)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings as other readers see them: rosbags, mcap with mcap_ros2, PyYAML."""
 
+import errno
 import itertools
+import os
 import shutil
 import subprocess
 
@@ -30,6 +32,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.definitions import definition
+from rigid_body_sim.recording import writer as module
+from rigid_body_sim.recording.metadata import FileRecord
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
 from rigid_body_sim.recording.topics import Topic
@@ -308,6 +312,98 @@ def test_nothing_is_larger_than_a_chunk_though_much_comes_at_once(tmp_path):
         ]
     assert len(sizes) > 10
     assert max(sizes) < CHUNK_SIZE + 500
+
+
+@pytest.mark.parametrize('lengths', [[1], [7], [8], [9], [100], [2000], [3, 300, 1, 8]])
+def test_the_file_does_not_tell_how_many_ticks_came_at_once(tmp_path, lengths):
+    """Each chunk ends with the tick that fills it, whether ticks come one by one or many."""
+    ticks = Ticks(0, 2000)
+    columns = ticks.stamps - 10**6 * (np.arange(2000) % 3), ticks.wall_clock    # some are older
+    for name, some in (('a', [2000]), ('b', lengths)):
+        with Writer(tmp_path / name / 'bag', TICKING, [], JOURNAL, {}) as writer:
+            first = 0
+            for length in itertools.cycle(some):
+                part = slice(first, first + length)
+                first += writer.ticks(first, *(column[part] for column in columns),
+                                      [rows[part] for rows in ticks.rows.values()])
+                if first == 2000:
+                    break
+    files = [(tmp_path / name / 'bag' / 'bag_0.mcap').read_bytes() for name in 'ab']
+    assert files[0] == files[1]
+    with Recording(tmp_path / 'b' / 'bag') as recording:
+        found = recording.read('/pose')
+    np.testing.assert_array_equal(found['sequence'], np.arange(2000))
+    np.testing.assert_array_equal(found['log_time'], np.maximum.accumulate(columns[0]))
+    np.testing.assert_array_equal(found['publish_time'], ticks.wall_clock)
+    np.testing.assert_array_equal(found['pose.orientation'], ticks.orientation)
+
+
+@pytest.mark.parametrize('options', [{}, {'split_bytes': 20_000}])
+def test_bytes_and_messages_are_counted_as_they_are_in_the_files(tmp_path, options):
+    ticks = Ticks(0, 500)
+
+    def size():
+        return sum(path.stat().st_size for path in (tmp_path / 'bag').glob('*.mcap'))
+    with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, {}, **options) as writer:
+        assert (writer.bytes_written, writer.messages_written) == (size(), 0)
+        for first in range(0, 500, 100):
+            part = slice(first, first + 100)
+            writer.ticks(first, ticks.stamps[part], ticks.wall_clock[part],
+                         [rows[part] for rows in ticks.rows.values()])
+            writer.flush()
+            assert writer.bytes_written == size()
+    assert writer.bytes_written == size()
+    with Recording(tmp_path / 'bag') as recording:
+        assert writer.messages_written == recording.message_count >= 2001
+    modes = {path.stat().st_mode & 0o777 for path in (tmp_path / 'bag').glob('*.mcap')}
+    mask = os.umask(0)
+    os.umask(mask)
+    assert modes == {0o644 & ~mask}
+
+
+def test_no_file_grows_beyond_the_largest(tmp_path, monkeypatch):
+    assert module.LARGEST_FILE == 4 * 10**9    # as the class promises
+    monkeypatch.setattr(module, 'LARGEST_FILE', 30_000)
+    for split_bytes in (0, 10**12):
+        write(tmp_path / f'b{split_bytes}', split_bytes=split_bytes)
+        assert len(list((tmp_path / f'b{split_bytes}').glob('*.mcap'))) >= 5
+
+
+def test_a_recording_goes_on_after_its_last_file(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    files = [FileRecord(name, 0, end, {'/scene': 1}) for name, end in (
+        ('bag_0.mcap', START), ('bag_10.mcap', START + 900), ('bag_9.mcap', START + 300))]
+    with Writer(tmp_path / 'bag', [], [SCENE], JOURNAL, {}, resume=files) as writer:
+        assert (writer.last_time, writer.state_wanted) == (START + 900, True)
+        writer.message('/scene', START, START, scene_text('x'))
+    assert [path.name for path in (tmp_path / 'bag').glob('*.mcap')] == ['bag_11.mcap']
+    with Recording(tmp_path / 'bag' / 'bag_11.mcap') as recording:
+        assert recording.start_time == recording.end_time == START + 900
+
+
+def test_ticks_that_the_disk_refuses_are_told_and_can_come_again(tmp_path):
+    ticks, full = Ticks(0, 3000), [False]
+    columns, rows = (ticks.stamps, ticks.wall_clock), list(ticks.rows.values())
+    with Writer(tmp_path / 'bag', TICKING, [], JOURNAL, {}) as writer:
+        flush = writer.flush
+
+        def refuses():
+            if full[0]:
+                raise OSError(errno.ENOSPC, 'No space left on device')
+            flush()
+        writer.flush = refuses
+        full[0] = True
+        done = writer.ticks(0, *columns, rows)
+        assert 0 < done < 3000    # until the first chunk is full
+        for _ in range(2):
+            with pytest.raises(OSError, match='No space left'):
+                writer.ticks(done, *(column[done:] for column in columns),
+                             [some[done:] for some in rows])
+        full[0] = False
+        assert writer.ticks(done, *(column[done:] for column in columns),
+                            [some[done:] for some in rows]) == 3000 - done
+    with Recording(tmp_path / 'bag') as recording:
+        np.testing.assert_array_equal(recording.read('/energy')['data'], ticks.energy)
 
 
 def test_empty_recording_is_whole(tmp_path):

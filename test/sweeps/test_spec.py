@@ -154,3 +154,62 @@ def test_a_spec_is_made_again_of_its_text():
             == one.sample['initial.orientation'].of_runs(0, 4)).all()
     changed = fingerprint(spec(accuracy=1e-8))
     assert {word for word in changed if changed[word] != fingerprint(spec())[word]} == {'accuracy'}
+
+
+def height(run):
+    return run.states.position[-1, 2]
+
+
+def test_a_function_is_carried_to_workers_unless_they_find_it_by_its_name():
+    for keep in ([{'function': height}], [{'function': height}, 'final'], ['final', {
+            'function': height}], {'function': height}):
+        one = spec(keep=keep)
+        [name] = one.functions
+        assert one.carried == {name: height}
+        assert again(one.text, one.carried).carried == {name: height}
+    named = spec(keep=['final', {'function': 'math:sqrt'}])
+    assert (list(named.functions), named.carried) == (['math:sqrt'], {})
+
+
+def test_what_is_left_out_has_its_default():
+    one = spec(vary={}, sample={'runs': 3, 'initial.orientation': 'rotation'})
+    assert (one.accuracy, one.integrator, one.times.tolist()) == (1e-12, 'auto', [0.0])
+    assert again(one.text, {}).times.tolist() == [0.0]
+    assert (one.sample['initial.orientation'].of_runs(0, 3) == spec(vary={}, sample={
+        'runs': 3, 'seed': 0, 'initial.orientation': 'rotation'}).sample[
+            'initial.orientation'].of_runs(0, 3)).all()
+    assert (spec().sample, spec().runs) == ({}, 0)
+    assert Kept('residuals').most == 0
+
+
+def test_as_many_times_of_an_event_as_may_be_kept():
+    assert kept({'all': 'flip', 'most': 10 ** 6})[0].most == 10 ** 6
+    for most in (10 ** 6 + 1, 0, 2.0, True):
+        with pytest.raises(BadInput, match=r'keep\.0\.most'):
+            kept({'all': 'flip', 'most': most})
+
+
+def test_a_spec_is_a_mapping_a_text_or_a_file_and_its_scene_may_lie_beside_it(tmp_path):
+    text = 'scene: {}\nvary: {{body.mass: [1, 2]}}\nkeep: final\n'
+    expected = spec().text
+    (tmp_path / 'tennis_racket').write_text('no scene: it has no suffix')
+    (tmp_path / 'a.yaml').write_text(text.format('tennis_racket'))
+    for given in (BASE, text.format('tennis_racket'), tmp_path / 'a.yaml',
+                  str(tmp_path / 'a.yaml')):
+        assert read(given).text == expected
+    assert read(read(BASE)).text == expected
+    for name in ('mine.yaml', 'mine.yml'):
+        (tmp_path / name).write_text(spec().scene.replace('tennis_racket', 'mine'))
+        (tmp_path / 'b.yaml').write_text(text.format(name))
+        assert 'mine' in read(tmp_path / 'b.yaml').scene
+    (tmp_path / 'b.yaml').write_text(text.format('nowhere.yaml'))
+    with pytest.raises(BadInput, match=r'nowhere\.yaml'):
+        read(tmp_path / 'b.yaml')
+
+
+def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
+    (tmp_path / 'a.yaml').write_bytes(b'scene: \xff\n')
+    with pytest.raises(BadInput, match=r'cannot read .*a\.yaml.: not UTF-8 text'):
+        read(tmp_path / 'a.yaml')
+    with pytest.raises(BadInput, match=r'cannot read .*b\.yaml.: No such file'):
+        read(tmp_path / 'b.yaml')
