@@ -210,9 +210,10 @@ class Choice:
         error : float
             The one to expect, rad.
         """
+        tolerance = max(FINEST, tolerance)
         met_until = self.horizon if error <= self.accuracy else None
-        return replace(self._at(max(FINEST, tolerance)), settled=settling.Settled(
-            self.method, max(FINEST, tolerance), error, met_until))
+        return replace(self._at(tolerance), settled=settling.Settled(
+            self.method, tolerance, error, met_until))
 
     def _at(self, tolerance):
         """Return a Choice of the method with another tolerance."""
