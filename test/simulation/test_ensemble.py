@@ -6,6 +6,7 @@ import types
 
 import numpy as np
 import pytest
+from near import near
 
 from rigid_body_sim import (
     BadInput,
@@ -223,12 +224,12 @@ def test_blocks_are_whole_lanes_of_about_the_bytes_of_200_bodies_at_three_times(
 def test_a_method_for_many_is_chosen_from_eight_bodies_of_a_scene_on(monkeypatch):
     asked, scene = [], load_scene('tennis_racket')
     monkeypatch.setattr(module, 'choose', lambda *_, together, **more: asked.append(
-        together) or types.SimpleNamespace(is_nearly=False))
+        together) or types.SimpleNamespace(is_nearly=False, settled=None))
     for count in (7, 8):
-        module._groups([scene], np.zeros((count, 14)), 'auto', 1e-9, 1.0)
+        module._groups([scene], np.zeros((count, 14)), np.ones(1), 'auto', 1e-9, 1.0)
     # those of another scene do not count
     other = load_scene('tennis_racket')
-    module._groups([scene, other] * 7 + [scene], np.zeros((15, 14)), 'auto', 1e-9, 1.0)
+    module._groups([scene, other] * 7 + [scene], np.zeros((15, 14)), np.ones(1), 'auto', 1e-9, 1.0)
     assert asked == [False, True, True, False]
 
 
@@ -337,7 +338,7 @@ def test_the_tolerance_of_many_bodies_is_what_the_worst_of_some_needs(monkeypatc
     assert by_scene.tolerance > for_all.tolerance
     assert (by_scene.accuracy, by_scene.method) == (for_all.accuracy, for_all.method)
     assert for_all.settled.tolerance == for_all.tolerance
-    assert for_all.expected_error == pytest.approx(3e-10, rel=1e-6)    # share of SPENT
+    assert for_all.expected_error == near(3e-10, rel=1e-6)    # share of SPENT
     assert for_all.missed is None
 
 

@@ -117,6 +117,7 @@ def test_a_body_that_nothing_holds_has_a_way_too():
     assert way_out(None, 0.0, 0.0) == (1.0, 0.0)
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('changes', 'held'), [
     ({}, True), ({'slope': 1.01}, False), ({'mu': 0.005}, False), ({'mu': 0.0098}, False),
     ({'spin': 2e-8}, False), ({'spin': 8e-9}, True), ({'about': 1e-3}, False),
@@ -133,6 +134,7 @@ def test_a_ball_rests_on_a_slope_no_steeper_than_rolling_friction_and_mu(changes
     assert bool(holds_still(c, at, force, tuple(case['about'] * n))) is held
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('surface', 'along', 'couple', 'held'), [
     ('disk', 0.0, (2.4, 3.1, 0.0), True), ('disk', 0.0, (2.4, 3.3, 0.0), False),
     ('torus', 5.0, (-2.96, 2.22, 0.0), True), ('torus', 5.0, (-3.04, 2.28, 0.0), False),
@@ -152,6 +154,7 @@ def test_a_flat_ring_rests_under_what_its_circle_and_friction_can_bear(
 
 
 @pytest.mark.parametrize(('share', 'held'), [(0.99, True), (1.01, False)])
+@pytest.mark.without_numba
 @pytest.mark.parametrize('surface', ['disk', 'torus'])
 def test_a_wheel_that_stands_rests_on_a_slope_along_its_rim_as_a_ball_does(surface, share, held):
     c = parameters(surface, ROLLS)._replace(swift=2.0)
