@@ -50,8 +50,8 @@ def closed():
 def stepped(case, goal):
     """Yield (name, callable, bodies times seconds) of a stepped case, run to an error.
 
-    `auto` is the ensemble with what our choice takes for that error, its look at some bodies
-    included.
+    `auto` is the ensemble as a user asks for it; its error, that of the worst body looked at, may be
+    larger than the goal.
     """
     import heyoka
     from short_runs import Case, heyoka_form, start_of
@@ -92,6 +92,7 @@ def stepped(case, goal):
         if error_of_ours(act) <= goal:
             yield f'{case}, taylor to {10.0 ** -digits:.0e}', act, MANY * DURATION
             break
+
     def act():
         return ensemble(scene, starts, [DURATION], accuracy=goal, horizon=DURATION)
     yield f'{case}, auto, error {error_of_ours(act):.0e}', act, MANY * DURATION
