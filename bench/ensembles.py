@@ -50,8 +50,8 @@ def closed():
 def stepped(case, goal):
     """Yield (name, callable, bodies times seconds) of a stepped case, run to an error.
 
-    `auto` is the ensemble as a user asks for it; its error, that of the worst body looked at, may be
-    larger than the goal.
+    `auto` is the ensemble as a user asks for it; its error, that of the worst of CHECKED bodies,
+    may be larger than the goal.
     """
     import heyoka
     from short_runs import Case, heyoka_form, start_of
