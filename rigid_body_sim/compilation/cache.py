@@ -3,6 +3,7 @@
 
 import contextlib
 import fcntl
+import functools
 import pathlib
 import time
 import warnings
@@ -11,6 +12,7 @@ import numba
 from numba.core.caching import FunctionCache, NullCache
 from numba.core.compiler_lock import global_compiler_lock
 
+from rigid_body_sim.compilation import callees
 from rigid_body_sim.compilation.environment import PACKAGE, cache_folder
 
 try:
@@ -58,13 +60,15 @@ class DeferredCache:
     """
 
     def __init__(self, function):
-        self._function, self._made = function, None
+        self._function = function
 
-    @property
+    @functools.cached_property
     def _cache(self):
-        if self._made is None:
-            self._made = _cache_of(self._function)
-        return self._made
+        return _cache_of(self._function, FunctionCache)
+
+    @functools.cached_property
+    def _cache_as_callee(self):
+        return _cache_of(self._function, callees.CalleeCache)
 
     @contextlib.contextmanager
     def alone(self):
@@ -88,17 +92,20 @@ class DeferredCache:
     def load_overload(self, signature, target_context):
         """Return the compiled code for the types of a call, or None."""
         with _going_on():
-            return self._cache.load_overload(signature, target_context)
+            cache = self._cache_as_callee if callees.has_caller() else self._cache
+            return cache.load_overload(signature, target_context)
         return None
 
     def save_overload(self, signature, data):
         """Keep the compiled code for the types of a call."""
         with _going_on():
-            self._cache.save_overload(signature, data)
+            cache = self._cache_as_callee if callees.has_caller() else self._cache
+            cache.save_overload(signature, data)
 
     def flush(self):
         """Remove the compiled code."""
         self._cache.flush()
+        self._cache_as_callee.flush()
 
     @property
     def cache_path(self):
@@ -117,7 +124,7 @@ def _wait_for(file):
             time.sleep(AGAIN)
 
 
-def _cache_of(function):
+def _cache_of(function, cache):
     folder = cache_folder()
     if folder is None:
         return NullCache()
@@ -129,7 +136,7 @@ def _cache_of(function):
     for name in before:
         setattr(numba.config, name, settings[name])
     try:
-        return FunctionCache(function)
+        return cache(function)
     finally:
         for name, value in before.items():
             setattr(numba.config, name, value)

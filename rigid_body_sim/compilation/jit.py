@@ -15,6 +15,7 @@ from rigid_body_sim.compilation.environment import HAVE_NUMBA, numba
 if HAVE_NUMBA:
     from numba.extending import register_jitable
 
+    from rigid_body_sim.compilation import callees
     from rigid_body_sim.compilation.cache import DeferredCache
 
 
@@ -22,16 +23,18 @@ def _jit(function, **options):
     if not HAVE_NUMBA:
         return function
     kernel = numba.njit(
-        error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
+        error_model='numpy', nogil=True, no_cfunc_wrapper=True,
+        pipeline_class=callees.KernelCompiler, **options)(function)
     kernel._cache = DeferredCache(function)
+    callees.let_be_callee(kernel)
     compile_here = kernel.compile
 
     def compile_once(signature):
         """Compile for the types of a call, unless another process does: then load that."""
         # each mention of a kernel in another one asks again: what is known needs no lock
-        if isinstance(signature, tuple) and signature in kernel.overloads:
+        if callees.in_a_caller() and signature in kernel.overloads:
             return compile_here(signature)
-        with kernel._cache.alone():
+        with kernel._cache.alone(), callees.compiling(kernel, signature):
             return compile_here(signature)
     kernel.compile = compile_once
     return kernel
