@@ -280,6 +280,12 @@ def test_gaps_at_the_start_in_the_middle_and_at_the_end(tmp_path):
     assert told == [*(Ticks(tick, 1).wall_clock[0] for tick in (2, 7, 20)), START + 20 * 10**6]
 
 
+def test_one_tick_that_is_missing_among_those_that_come_at_once_is_told(tmp_path):
+    code, reports = run(setup(tmp_path / 'bag'), ticks(0, 2), ticks(3, 2), end(5))
+    assert (code, reports[-1].dropped) == (0, 1)
+    assert recorded(tmp_path / 'bag') == ([], [0, 1, 3, 4], [(1, 1, 3)])
+
+
 @pytest.mark.parametrize(('sent', 'dropped'), [(8, 5), (3, 0), (2, 0)])
 def test_ticks_that_are_missing_where_a_full_disk_ends_are_told(tmp_path, sent, dropped):
     process = RecorderProcess(-1, lambda line: True)
