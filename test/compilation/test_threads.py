@@ -52,11 +52,12 @@ def three_cores(monkeypatch):
 @pytest.mark.parametrize('kind', [AtOnce, TooBusy])
 @pytest.mark.parametrize(('count', 'least', 'size'), [
     # eight slices for each of three cores, or as many items in each as there have to be
-    (24, 1, 1), (25, 1, 2), (240, 1, 10), (241, 1, 11), (240, 30, 30), (31, 30, 30)])
+    (24, None, 1), (24, 1, 1), (25, 1, 2), (240, 1, 10), (241, 1, 11), (240, 30, 30),
+    (31, 30, 30)])
 def test_slices_are_as_large_as_is_asked_and_each_item_comes_once(
         three_cores, kind, count, least, size):
     pool, seen = three_cores(kind()), []
-    threads.on_all_cores(seen.append, count, least)
+    threads.on_all_cores(seen.append, count, *([] if least is None else [least]))
     assert seen == [slice(k, min(k + size, count)) for k in range(0, count, size)]
     assert pool.submitted == 2    # the third core is the caller's
 

@@ -38,7 +38,8 @@ def test_what_is_allowed_is_taken_with_the_type_of_the_table(entry, value, expec
     (WORDS, ['odo'], "got 'odo'; did you mean 'odom'"),
     (WORDS, ['xyzzy'], "got 'xyzzy'; needs one of pose, twist, odom, imu"),
     (WORDS, ['pose', 5], r"got \['pose', 5\]; needs a list of words, each one of pose, twist"),
-    (WORDS, 5, 'got 5; needs a list of words, each'), (TEXTS, [5], r'needs a list of words$'),
+    (WORDS, 5, 'got 5; needs a list of words, each'),
+    (TEXTS, [5], r'got \[5\]; needs a list of words$'),
     (SWITCH, 1, 'got 1; needs true or false'), (WORD, True, 'got True; needs a text')])
 def test_anything_else_is_refused_with_what_would_be_right(entry, value, said):
     with pytest.raises(BadInput, match=f'parameter {entry.name}: {said}'):

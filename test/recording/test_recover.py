@@ -227,7 +227,7 @@ def counted(path):
     lambda bag: bag['files'][1].update(path='other_1.mcap'),
     lambda bag: bag.update(message_count=7)])
 def test_metadata_yaml_that_counts_otherwise_is_written_anew_and_no_other(tmp_path, change):
-    path = write(tmp_path / 'bag', count=20, block=10, split_seconds=0.01)
+    path = write(tmp_path / 'bag', count=60, block=10, split_seconds=0.02)
     file = path / 'metadata.yaml'
     whole, noted = counted(file), file.read_text() + '# noted by hand\n'
     file.write_text(noted)
