@@ -59,8 +59,10 @@ def test_what_was_not_used_for_a_month_goes(tmp_path, monkeypatch):
         (tmp_path / name / 'kernel').write_text('')
         os.utime(tmp_path / name, (now - age * DAY, now - age * DAY))
     monkeypatch.setattr(environment, 'time', types.SimpleNamespace(time=lambda: now))
+    (tmp_path / 'no folder').write_text('')    # nor is this a cache
+    os.utime(tmp_path / 'no folder', (0.0, 0.0))
     environment._remove_unused(tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ['a month', 'new']
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['a month', 'new', 'no folder']
 
 
 @pytest.mark.parametrize(('told', 'name'), [('', 'riscv64'), ('rv64gc', 'rv64gc')])

@@ -243,8 +243,16 @@ def test_a_recorder_that_died_is_followed_by_another_a_second_after_it_began(beg
         fed.now += later
         assert fed.status().restarts == restarts
     assert fed.made == [False, True]
+    fed.ticks(1)    # it waits until that one is ready, though nothing else does
+    assert told(fed)[2] == TICK
     fed.report(Report(resend=2))
     assert told(fed) == (0, 0, 0, '')
+    assert fed.take() == numbers(0, 1)
+
+
+def test_files_are_not_split_and_no_commands_come_unless_that_is_said(begin):
+    setup = begin()._setup
+    assert (setup['split_bytes'], setup['split_seconds'], setup['commands']) == (0, 0.0, None)
 
 
 def test_until_the_next_recorder_is_ready_that_is_said_and_everything_waits(begin):
