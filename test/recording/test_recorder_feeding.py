@@ -119,6 +119,7 @@ def numbers(first, count):
 def test_what_the_pipe_does_not_take_waits_and_comes_whole_and_in_order(begin):
     fed = begin()
     fed.ticks(FULL)
+    assert fed._waiting_size == 0
     assert told(fed) == (0, 0, 0, '')
     fed.ticks(1)
     assert told(fed) == (0, 0, TICK, '')
@@ -158,6 +159,11 @@ def test_beyond_the_limit_ticks_are_dropped_until_half_of_what_waits_has_gone(
     assert told(fed)[0] == 0    # the gap is the recorder's to count now
     fed.tell(dropped=4)
     assert told(fed)[0] == 4
+
+
+def test_a_recorder_that_hangs_costs_a_fraction_of_the_memory_of_a_small_machine():
+    """There is room for seconds of ticks at 1 kHz, and not for a gigabyte."""
+    assert 10_000 * TICK < module.BACKLOG < module.UNCONFIRMED < 2**30 - module.BACKLOG
 
 
 def test_important_messages_are_kept_until_they_are_in_the_file_up_to_a_limit(begin, monkeypatch):
@@ -259,15 +265,18 @@ def test_until_the_next_recorder_is_ready_that_is_said_and_everything_waits(begi
     fed = begin()
     fed._first, fed.code = Report(resend=1), 1
     os.close(fed.packets)
+    fed.ticks(1)
+    assert fed._begun == 0    # nobody has taken a part of it
     fed.important('/scene', 0, 0, b'')
-    fed.ticks(2)
+    fed.ticks(1)
+    assert fed._begun == 0
     waiting = packets.MESSAGE_HEAD.size + 2 * TICK
     assert told(fed) == (0, 0, waiting, 'the recorder died; a new one is starting')
     fed.now += 1.0
     assert told(fed) == (0, 0, waiting, 'the recorder died; a new one is starting')
     fed.tell(resend=2)
     assert told(fed) == (0, 0, 0, '')
-    assert fed.take() == [(packets.MESSAGE, 1), *numbers(0, 2)]
+    assert fed.take() == [(packets.TICK, 0), (packets.MESSAGE, 1), (packets.TICK, 1)]
 
 
 def test_one_that_has_closed_the_recording_did_not_die(begin):
