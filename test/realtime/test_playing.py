@@ -97,7 +97,7 @@ def test_when_it_is_stopped_it_sends_no_more(play, paused, seconds):
 
 @pytest.mark.parametrize(('count', 'size', 'batches'), [
     (3, 8, [3]), (256, 8, [256, 0]), (300, 8, [256, 44]), (5, 2**19, [2, 2, 1]),
-    (3, 2**20, [1, 1, 1, 0])])
+    (3, 2**20, [1, 1, 1, 0]), (4, 2**20 - 1, [2, 2, 0])])
 def test_messages_are_read_by_a_few_hundred_or_a_megabyte(count, size, batches):
     asked = []
 
@@ -110,6 +110,28 @@ def test_messages_are_read_by_a_few_hundred_or_a_megabyte(count, size, batches):
     assert read.pop() is None and asked == [(['/a'], 5, 500)]
     assert [len(batch) for batch in read] == batches
     assert [position for batch in read for position, _ in batch] == list(range(count))
+
+
+def test_each_loop_begins_where_the_one_before_ended():
+    """Three loops over 40 ns, with messages after 5 and 25 ns; then the disk fails."""
+    left = [[10, 30], [10, 30], [10, 30]]
+
+    def messages(topics, start, end):
+        return map(message, left.pop())
+    reading = Reading(types.SimpleNamespace(messages=messages), [], 5, 45, loop=True)
+    reading.run()
+    positions = []
+    with pytest.raises(IndexError):    # noqa: PT012, it is raised between them
+        for position, _ in reading:
+            positions.append(position)
+    assert positions == [5, 25, 45, 65, 85, 105]
+
+
+def test_nobody_waits_for_threads_that_have_not_begun():
+    reading = Reading(None, [], 5, 45, loop=False)
+    player = Player(reading, {}, None, 1.0, False, None)
+    assert reading.daemon and player.daemon
+    assert (player.now, player.seconds, player.published, player.loops) == (5, 0.0, 0, 0)
 
 
 def test_an_error_while_reading_is_raised_in_the_thread_that_plays():

@@ -3,6 +3,8 @@
 
 import os
 import signal
+import threading
+import types
 
 import pytest
 
@@ -70,3 +72,15 @@ def test_under_nohup_the_end_of_the_terminal_is_not_heard(later):
             assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, signal.SIG_DFL)
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_what_is_to_come_later_keeps_no_process_alive(monkeypatch):
+    begun = []
+
+    def timer(*told):
+        made = types.SimpleNamespace(daemon=False)
+        made.start = lambda: begun.append((made.daemon, told))
+        return made
+    monkeypatch.setattr(threading, 'Timer', timer)
+    shutdown._later(0.5, print, 'a', 'b')
+    assert begun == [(True, (0.5, print, ('a', 'b')))]
