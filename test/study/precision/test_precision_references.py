@@ -164,6 +164,7 @@ def test_a_ball_slides_then_rolls_as_its_formulas_say():
     with mp.workprec(BITS + 64):
         growth, rolls = mpf(30), 2 * mpf(7) / 21
         made = ball(velocity=(mpf(7), mpf(0), mpf(0)))
+        assert made.time == 0.0
         for time in (0.25, 0.5, 1.0, 2.5):
             q, omega = made.go(time)
             slid = min(mpf(time), rolls)
@@ -193,17 +194,19 @@ def test_without_friction_a_ball_keeps_its_spin():
             assert apart(q, (0, 0, mp.sin(mpf(1.5)), mp.cos(mpf(1.5)))) < 1e-43
 
 
-@pytest.mark.parametrize(('height', 'slides'), [('0.1', False), ('0.05', True), ('-0.1', True)])
-def test_a_cue_turns_a_ball_by_the_height_at_which_it_strikes(height, slides):
+@pytest.mark.parametrize(('height', 'along', 'across', 'slides'), [
+    ('0.1', 3, 4, False), ('0.05', 3, 4, True), ('-0.1', 3, 0, True), ('0.1', 0, 4, False)])
+def test_a_cue_turns_a_ball_by_the_height_at_which_it_strikes(height, along, across, slides):
     """I omega = h J across: at 2/5 of the radius above the centre the ball rolls at once."""
     with mp.workprec(BITS + 64):
-        made = ball(strikes=((0.5, (mpf(3), mpf(4), mpf(0)), inputs.ZERO, mpf(height), 'world'),),
+        impulse, h = (mpf(along), mpf(across), mpf(0)), mpf(height)
+        made = ball(strikes=((0.5, impulse, inputs.ZERO, h, 'world'),),
                     omega=(mpf(0), mpf(0), mpf(1)))
         q, omega = made.go(0.5)
         moment = made._given.moments[0]
-        struck = (-4 * mpf(height) / moment, 3 * mpf(height) / moment, mpf(1))
+        struck = (-across * h / moment, along * h / moment, mpf(1))
         assert apart(inputs.turned(q, omega), struck) < 1e-43
-        assert apart(made._v, (mpf(3) / 2, mpf(2))) < 1e-43
+        assert apart(made._v, (mpf(along) / 2, mpf(across) / 2)) < 1e-43
         assert apart(q, (0, 0, mp.sin(mpf(1) / 4), mp.cos(mpf(1) / 4))) < 1e-43
         q, omega = made.go(0.75)
         assert (apart(inputs.turned(q, omega), struck) > 1e-3) == slides
