@@ -166,6 +166,7 @@ class Player(threading.Thread):
         while not self._stopping:
             if self._paused:
                 self._idle()
+                continue    # it may have been stopped meanwhile
             now = time.monotonic_ns()
             left = self._origin + ahead - now
             if now >= self._next_clock:

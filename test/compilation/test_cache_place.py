@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cache of kernels works with the numba of each distribution, and where nothing is kept."""
 
+import fcntl
 import os
 import subprocess
 import sys
+import types
 
 import pytest
 import ros
@@ -48,3 +50,26 @@ def test_a_folder_that_is_gone_does_not_end_what_is_computed(tmp_path):
     value, heard = done.stdout.splitlines()
     assert value == '0.0'
     assert heard.startswith('RuntimeWarning: compiled kernels are not kept for the next process: ')
+
+
+def test_nobody_waits_for_a_lock_longer_than_is_patient(tmp_path, monkeypatch):
+    """Looks at it 0, 1/4, 1/2 and 3/4 s after it began; without a holder one is enough."""
+    from rigid_body_sim.compilation import cache
+    now, slept = [100.0], []
+
+    def sleep(seconds):
+        slept.append(seconds)
+        now[0] += seconds
+    monkeypatch.setattr(cache, 'time', types.SimpleNamespace(
+        monotonic=lambda: now[0], sleep=sleep))
+    monkeypatch.setattr(cache, 'PATIENCE', 1.0)
+    monkeypatch.setattr(cache, 'AGAIN', 0.25)
+    with (tmp_path / 'lock').open('wb') as other, (tmp_path / 'lock').open('wb') as mine:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        cache._wait_for(mine)
+        assert slept == [0.25] * 4
+        fcntl.flock(other, fcntl.LOCK_UN)
+        cache._wait_for(mine)
+        assert slept == [0.25] * 4
+        with pytest.raises(BlockingIOError):    # it is held now
+            fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -2,6 +2,7 @@
 """The doorbell: no message waits long, no look is wasted, no busy executor is in the way."""
 
 import time
+import types
 
 import pytest
 import rclpy
@@ -87,3 +88,47 @@ def test_messages_are_found_while_the_executor_is_busy(house):
     time.sleep(0.2)
     found = [house.look() for _ in range(2 * GLANCE) if not house.bell.silent()]
     assert found == [1, 0]
+
+
+def test_the_tick_thread_glances_now_and_then_though_the_bell_is_silent():
+    """After a hundred looks in vain, and one, it looks every 32 ticks until something comes."""
+    woken, handles = [], ['one', 'two']
+    bell = Doorbell(types.SimpleNamespace(
+        add_waitable=lambda bell: None,
+        executor=types.SimpleNamespace(wake=lambda: woken.append(1))),
+        [types.SimpleNamespace(handle=handle) for handle in handles])
+
+    def listens():
+        """Return how many subscriptions the executor waits for, and which."""
+        count, added = bell.get_num_entities().num_subscriptions, []
+        bell.add_to_wait_set(types.SimpleNamespace(
+            add_subscription=lambda handle: added.append(handle) or len(added) - 1))
+        return count, added
+
+    def quiet(looks):
+        for _ in range(looks):
+            assert not bell.silent()
+            bell.answer(0)
+    assert listens() == (0, [])
+    quiet(LOOKS)
+    assert not bell.silent() and woken == []
+    bell.answer(1)    # it begins anew
+    quiet(LOOKS)
+    assert not bell.silent() and woken == []
+    bell.answer(0)
+    assert woken == [1] and listens() == (2, handles)
+    for _ in range(3):
+        assert [bell.silent() for _ in range(GLANCE)] == [True] * (GLANCE - 1) + [False]
+        bell.answer(0)    # it was not the bell
+    assert bell.silent() and woken == [1]
+    assert not bell.is_ready(types.SimpleNamespace(is_ready=lambda kind, place: False))
+    assert bell.silent()
+    # one of them has a message; there is nothing for the executor to do
+    assert not bell.is_ready(types.SimpleNamespace(is_ready=lambda kind, place: place == 1))
+    assert listens() == (0, [])
+    quiet(LOOKS + 1)
+    assert bell.silent()
+    new = Doorbell(bell._node, [])
+    for _ in range(LOOKS + 1):
+        new.answer(0)
+    assert new.silent()

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node's recording: states as published, and every command, reset and change with its tick."""
 
+import datetime
+import types
+
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, Vector3, Wrench, WrenchStamped
@@ -11,6 +14,8 @@ from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Trigger
 
 from rigid_body_sim.analysis.resimulate import resimulate
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.node import journal
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -147,3 +152,40 @@ def test_topics_that_the_node_remapped_are_run_again_as_well(tmp_path, run_node_
     assert comparison.parting is None
     with Recording(path) as opened:
         assert comparison.messages == 4 * len(opened.states())
+
+
+class Chosen(dict):
+    """Parameters by name, and the recordings that the node made."""
+
+    def __init__(self, folder, name):
+        super().__init__({'recording.directory': str(folder), 'recording.name': name})
+        self.recordings = set()
+
+
+NODE = types.SimpleNamespace(get_fully_qualified_name=lambda: '/lab/left/sim_node')
+
+
+def test_a_recording_has_the_name_of_node_scene_and_time_and_a_number_if_that_is_taken(
+        tmp_path, monkeypatch):
+    monkeypatch.setattr(journal, 'datetime', types.SimpleNamespace(datetime=types.SimpleNamespace(
+        now=lambda: datetime.datetime(2026, 3, 4, 5, 6, 7))))
+    name = 'lab_left_sim_node_racket_2026-03-04_05-06-07'
+    for expected in (name, f'{name}_2', f'{name}_3'):
+        path = journal._free_path(NODE, Chosen(tmp_path, ''), 'racket')
+        assert path == tmp_path / expected
+        path.mkdir()
+
+
+def test_a_name_that_was_asked_for_is_numbered_only_after_recordings_of_this_node(tmp_path):
+    settings = Chosen(tmp_path, 'run')
+    (tmp_path / 'run').mkdir()    # of somebody else: the recorder will refuse it
+    for expected in ('run', 'run_2', 'run_3'):
+        path = journal._free_path(NODE, settings, 'racket')
+        assert path == tmp_path / expected
+        settings.recordings.add(path)
+
+
+@pytest.mark.parametrize('name', ['a/b', '/a', '.', 'a/'])
+def test_a_name_is_one_word_of_a_path(tmp_path, name):
+    with pytest.raises(BadInput, match=r'parameter recording\.name'):
+        journal._free_path(NODE, Chosen(tmp_path, name), 'racket')

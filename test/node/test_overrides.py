@@ -229,3 +229,32 @@ def test_what_is_fixed_may_be_set_to_what_it_is(start):
     for value, successful in (['odom', 'imu'], True), (['odom'], False):
         [result] = node.set_parameters([Parameter('publish', value=value)])
         assert result.successful == successful
+
+
+@pytest.mark.parametrize(('pattern', 'covered', 'others'), [
+    ('/**', ['/**', '/a', '/a/b', '/*', '/**/b'], []),
+    ('/*', ['/a', '/*'], ['/a/b', '/*/b']), ('/a/*', ['/a/b'], ['/a', '/a/b/c', '/b/b']),
+    ('/**/b', ['/b', '/a/b', '/x/y/b'], ['/a', '/b/a', '/ab']),
+    ('/a.b', ['/a.b'], ['/a+b', '/axb', '/a.b/c']), ('/a', ['/a'], ['/**', '/*', '/ab'])])
+def test_a_pattern_covers_the_nodes_that_it_stands_for(pattern, covered, others):
+    assert [name for name in (*covered, *others) if overrides._covers(pattern, name)] == covered
+
+
+@pytest.mark.parametrize(('sections', 'merged', 'shared'), [
+    ([(True, {'/**': {'a': 1, 'b': 2}}), (False, {'/**': {'a': 3}})],
+     {'/**': {'a': 3, 'b': 2}}, {'b'}),
+    # what a name of a node says goes with a later pattern, and not with an earlier one
+    ([(True, {'/n': {'a': 1}}), (True, {'/**': {'a': 3}})], {'/n': {}, '/**': {'a': 3}}, {'a'}),
+    ([(True, {'/**': {'a': 3}}), (True, {'/n': {'a': 1}})],
+     {'/**': {'a': 3}, '/n': {'a': 1}}, set()),
+    ([(True, {'/n': {'a': 1}, '/**': {'a': 3}})], {'/n': {'a': 1}, '/**': {'a': 3}}, set()),
+    ([(True, {'/**/n': {'a': 1}}), (True, {'/x/*': {'b': 1}})],
+     {'/**/n': {'a': 1}, '/x/*': {'b': 1}}, {'b'})])
+def test_sections_are_merged_in_their_order(sections, merged, shared):
+    """Shared is what only sections of a file for several nodes have."""
+    assert overrides._merged(sections) == (merged, shared)
+
+
+def test_what_is_said_of_an_error_is_one_line_of_300_characters():
+    assert process._one_line(ValueError('a\n  b\tc')) == 'a b c'
+    assert process._one_line(ValueError('x' * 400)) == 'x' * 300

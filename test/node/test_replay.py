@@ -17,6 +17,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import replay
 from rigid_body_sim.node.offered_qos import offered_qos
 from rigid_body_sim.realtime.playing import Player, Reading
@@ -202,3 +203,39 @@ def test_bad_input_is_one_line(recording, tmp_path, monkeypatch, capfd):
             replay.main([str(argument) for argument in arguments])
         error = capfd.readouterr().err
         assert ended.value.code == 2 and said in error and error.count('\n') == 1, error
+
+
+def opened(monkeypatch, *arguments, count=1, length=2.5):
+    """Open a recording that lasts so long (s), as the options of a command line say."""
+    monkeypatch.setattr(replay, 'Recording', lambda path: types.SimpleNamespace(
+        start_time=SECOND, end_time=SECOND + round(length * SECOND), message_count=count))
+    return replay._opened(replay._parser().parse_args(['run', *arguments]))
+
+
+@pytest.mark.parametrize('arguments', [
+    (), ('--rate', '1e6'), ('--rate', '1e-9'), ('--start', '2.5'), ('--loop',),
+    ('--loop', '--start', '2.499')])
+def test_what_fits_a_recording_is_played(monkeypatch, arguments):
+    assert opened(monkeypatch, *arguments).end_time == SECOND + 5 * SECOND // 2
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (('--rate', '1.1e6'), 'got 1.1e.06; a number above 0, up to 1e.06'),
+    (('--rate', '-1'), '--rate: got -1'), (('--rate', 'inf'), '--rate: got inf'),
+    (('--start', '-0.1'), 'got -0.1; from 0 to 2.5, the length'),
+    (('--start', 'nan'), '--start: got nan'), (('--start', '2.501'), '--start: got 2.501'),
+    (('--loop', '--start', '2.5'), 'there is only one instant')])
+def test_what_does_not_fit_a_recording_is_refused(monkeypatch, arguments, said):
+    with pytest.raises(BadInput, match=said):
+        opened(monkeypatch, *arguments)
+
+
+def test_a_recording_of_nothing_cannot_be_played(monkeypatch):
+    with pytest.raises(BadInput, match='run: holds no messages'):
+        opened(monkeypatch, count=0, length=0.0)
+
+
+def test_a_recording_is_played_once_from_its_start_at_its_own_pace_unless_asked_otherwise():
+    options = replay._parser().parse_args(['run'])
+    assert (options.rate, options.start, options.loop, options.topics, options.paused) == (
+        1.0, 0.0, False, None, False)

@@ -42,12 +42,21 @@ def test_a_bag_without_a_message_starts_and_ends_at_zero():
 
 def test_it_is_written_whole_and_read_as_it_was(tmp_path):
     bag = metadata.bag_metadata([POSE, ENERGY], FILES, {'about': 'größer: ja\n' * 300})
-    folder = os.open(tmp_path, os.O_RDONLY)
+    folder, before = os.open(tmp_path, os.O_RDONLY), os.umask(0)
     try:
         metadata.write(folder, bag)
     finally:
+        os.umask(before)
         os.close(folder)
     assert [path.name for path in tmp_path.iterdir()] == ['metadata.yaml']
+    # all may read it, and whoever records may write it
+    assert (tmp_path / 'metadata.yaml').stat().st_mode & 0o777 == 0o644
     text = (tmp_path / 'metadata.yaml').read_text()
+    assert 'größer' in text    # for people too
     assert metadata.load(text) == {metadata.ROOT: bag}
     assert list(metadata.load(text)[metadata.ROOT])[:2] == ['version', 'storage_identifier']
+
+
+def test_it_has_the_version_that_jazzy_writes():
+    """Newer ones are refused by its rosbag2, and older ones have no hashes of types."""
+    assert metadata.bag_metadata([POSE], FILES, None)['version'] == 9

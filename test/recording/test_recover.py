@@ -25,7 +25,7 @@ from soak import SOAK
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.recording.mcap import mending
 from rigid_body_sim.recording.mcap.records import HEAD, to_bytes
-from rigid_body_sim.recording.recover import main, recover
+from rigid_body_sim.recording.recover import _told, main, recover
 
 OFFSETS = 1000 if SOAK else 25
 
@@ -216,6 +216,58 @@ def test_metadata_yaml_comes_back_as_it_was(tmp_path):
             )
         else:
             assert there == told
+
+
+def counted(path):
+    return yaml.safe_load(path.read_text())['rosbag2_bagfile_information']
+
+
+@pytest.mark.parametrize('change', [
+    lambda bag: bag['files'][0].update(message_count=7),
+    lambda bag: bag['files'][1].update(path='other_1.mcap'),
+    lambda bag: bag.update(message_count=7)])
+def test_metadata_yaml_that_counts_otherwise_is_written_anew_and_no_other(tmp_path, change):
+    path = write(tmp_path / 'bag', count=60, block=10, split_seconds=0.02)
+    file = path / 'metadata.yaml'
+    whole, noted = counted(file), file.read_text() + '# noted by hand\n'
+    file.write_text(noted)
+    assert not any(result.changed for result in recover(path))
+    assert file.read_text() == noted
+    bag = counted(file)
+    assert len(bag['files']) > 1
+    change(bag)
+    file.write_text(yaml.safe_dump({'rosbag2_bagfile_information': bag}))
+    recover(path)
+    assert counted(file) == whole
+
+
+FILE = '{path: x_0.mcap, message_count: 3}'
+
+
+@pytest.mark.parametrize('text', [
+    f'{{message_count: 3, files: [{FILE}, {{path: 1, message_count: 3}}]}}',
+    f"{{message_count: 3, files: [{FILE}, {{path: y, message_count: '3'}}]}}",
+    f"{{message_count: '3', files: [{FILE}]}}", f'{{message_count: 3, files: [{FILE}, 5]}}',
+    '{message_count: 3, files: 5}', f'{{files: [{FILE}]}}'])
+def test_metadata_yaml_that_makes_no_sense_tells_nothing(tmp_path, text):
+    (tmp_path / 'metadata.yaml').write_text(f'rosbag2_bagfile_information: {text}\n')
+    assert _told(tmp_path) == {}
+
+
+def test_metadata_yaml_tells_the_messages_of_each_file(tmp_path):
+    (tmp_path / 'metadata.yaml').write_text(
+        f'rosbag2_bagfile_information: {{message_count: 3, files: [{FILE}]}}\n')
+    assert _told(tmp_path)['files'] == [{'path': 'x_0.mcap', 'message_count': 3}]
+
+
+@pytest.mark.parametrize(('filename', 'named'), [(None, 'recover'), ('a/b.mcap', 'a/b.mcap')])
+def test_a_disk_that_refuses_is_named(monkeypatch, capsys, filename, named):
+    def refuses(path):
+        raise OSError(errno.ENOSPC, 'No space left on device', filename)
+    monkeypatch.setattr('rigid_body_sim.recording.recover.recover', refuses)
+    assert main(['x']) == 1
+    assert capsys.readouterr().err == (
+        f'{named}: the disk refuses (No space left on device); make room and run it again\n')
 
 
 def test_split_recording_cut_in_its_last_file(tmp_path):

@@ -7,6 +7,7 @@ The references in test/data are made by Gragg's extrapolation.
 import dataclasses
 import json
 import pathlib
+import types
 from typing import ClassVar
 
 import numpy as np
@@ -147,6 +148,121 @@ def test_a_ball_agrees_with_extrapolation(name):
             # the scene's moment a^2 k is rounded once: 1e-16 of the rates
             assert apart(q, expected[:4]) < 1e-13
             assert apart(omega, expected[4:7]) < 1e-12
+
+
+def ball(**given):
+    """Return a billiard ball at rest, of 2 kg and 1/4 m on a table with mu g = 3 m/s^2."""
+    zero, moment = (mpf(0),) * 3, mpf(2) / 5 * 2 / 16
+    return Ball(types.SimpleNamespace(**{
+        'moments': (moment,) * 3, 'mass': mpf(2), 'radius': mpf(1) / 4, 'mu': mpf(3) / 10,
+        'g': mpf(10), 'orientation': (mpf(0), mpf(0), mpf(0), mpf(1)), 'omega': zero,
+        'velocity': zero, 'strikes': (), **given}), BITS)
+
+
+def test_a_ball_slides_then_rolls_as_its_formulas_say():
+    """Omega grows by 5 mu g/(2 a) until v = a omega, at 2 v/(7 mu g): then 5/7 of v is left."""
+    with mp.workprec(BITS + 64):
+        growth, rolls = mpf(30), 2 * mpf(7) / 21
+        made = ball(velocity=(mpf(7), mpf(0), mpf(0)))
+        assert made.time == 0.0
+        for time in (0.25, 0.5, 1.0, 2.5):
+            q, omega = made.go(time)
+            slid = min(mpf(time), rolls)
+            angle = growth * slid ** 2 / 2 + growth * slid * (time - slid)
+            assert apart(omega, (0, growth * slid, 0)) < 1e-43
+            assert apart(q, (0, mp.sin(angle / 2), 0, mp.cos(angle / 2))) < 1e-43
+        assert made.time == 2.5
+
+
+@pytest.mark.parametrize(('velocity', 'spin'), [
+    ((0.3, 0.0), (0.0, 3.0)), ((0.0, 0.7), (-7.0, 0.0)), ((0.6, -0.3), (3.0, 6.0))])
+def test_a_ball_that_rolls_but_for_the_rounding_of_its_start_rolls_on(velocity, spin):
+    with mp.workprec(BITS + 64):
+        omega = (*map(mpf, spin), mpf(0.5))
+        made = ball(velocity=(*map(mpf, velocity), mpf(0)), omega=omega, radius=mpf(0.1))
+        q, turned = made.go(3.0)
+        assert apart(inputs.turned(q, turned), omega) < 1e-43
+
+
+def test_without_friction_a_ball_keeps_its_spin():
+    with mp.workprec(BITS + 64):
+        for none in ('mu', 'g'):
+            made = ball(**{none: mpf(0)}, velocity=(mpf(1), mpf(0), mpf(0)),
+                        omega=(mpf(0), mpf(0), mpf(2)))
+            q, omega = made.go(1.5)
+            assert apart(omega, (0, 0, 2)) < 1e-43
+            assert apart(q, (0, 0, mp.sin(mpf(1.5)), mp.cos(mpf(1.5)))) < 1e-43
+
+
+@pytest.mark.parametrize(('height', 'along', 'across', 'slides'), [
+    ('0.1', 3, 4, False), ('0.05', 3, 4, True), ('-0.1', 3, 0, True), ('0.1', 0, 4, False)])
+def test_a_cue_turns_a_ball_by_the_height_at_which_it_strikes(height, along, across, slides):
+    """I omega = h J across: at 2/5 of the radius above the centre the ball rolls at once."""
+    with mp.workprec(BITS + 64):
+        impulse, h = (mpf(along), mpf(across), mpf(0)), mpf(height)
+        made = ball(strikes=((0.5, impulse, inputs.ZERO, h, 'world'),),
+                    omega=(mpf(0), mpf(0), mpf(1)))
+        q, omega = made.go(0.5)
+        moment = made._given.moments[0]
+        struck = (-across * h / moment, along * h / moment, mpf(1))
+        assert apart(inputs.turned(q, omega), struck) < 1e-43
+        assert apart(made._v, (mpf(along) / 2, mpf(across) / 2)) < 1e-43
+        assert apart(q, (0, 0, mp.sin(mpf(1) / 4), mp.cos(mpf(1) / 4))) < 1e-43
+        q, omega = made.go(0.75)
+        assert (apart(inputs.turned(q, omega), struck) > 1e-3) == slides
+
+
+def test_a_ball_is_struck_at_a_point_of_the_body_where_it_is_by_then():
+    """The point (0, 0.2, 0) has gone round by w t = 1/2 rad; there is no friction."""
+    with mp.workprec(BITS + 64):
+        impulse, lever = (mpf(1), mpf(2), mpf(0)), (mpf(0), mpf(1) / 5, mpf(0))
+        made = ball(strikes=((0.5, impulse, lever, mpf(0), 'world'),), mu=mpf(0),
+                    omega=(mpf(0), mpf(0), mpf(1)))
+        q, omega = made.go(0.5)
+        x, y = -mp.sin(mpf(1) / 2) / 5, mp.cos(mpf(1) / 2) / 5
+        assert apart(inputs.turned(q, omega), (
+            0, 0, 1 + (2 * x - y) / made._given.moments[0])) < 1e-43
+
+
+@pytest.mark.parametrize('frame', ['body', 'world'])
+@pytest.mark.parametrize('constraint', ['free', '{hinge: {axis: [0, 0, 1]}}'])
+def test_a_strike_changes_the_spin_by_its_moment(constraint, frame):
+    """A body that turns about z by w t = 1 rad is struck in its x-y plane: I w' = (r x J)_z."""
+    hinged = constraint != 'free'
+    initial = '{rate: 2}' if hinged else '{angular_velocity: [0, 0, 2]}'
+    scene = parse_scene(
+        'scene: a\nbody: {mass: 1.5, inertia: [1, 2, 2.5], center_of_mass: [0.5, 0, 0]}\n'
+        f'constraint: {constraint}\neffects: [strike: {{impulse: [3, -1, 0], point: '
+        f'[0.25, 2, 0], time: 0.5, frame: {frame}}}]\ninitial: {initial}\n')
+    with mp.workprec(BITS + 64):
+        made = Turning(inputs.of(scene, inputs.exactly), BITS)
+        angle = mpf(1) if frame == 'world' else mpf(0)
+        jx, jy = (3 * mp.cos(angle) - mp.sin(angle), -3 * mp.sin(angle) - mp.cos(angle))
+        x, moment = (mpf('0.25'), mpf('2.5') + mpf('1.5') / 4) if hinged else (
+            mpf('-0.25'), mpf('2.5'))
+        assert apart(made.go(0.25)[1], (0, 0, 2)) < 1e-40
+        assert apart(made.go(0.5)[1], (0, 0, 2 + (x * jy - 2 * jx) / moment)) < 1e-40
+        assert apart(made.go(1.0)[1], (0, 0, 2 + (x * jy - 2 * jx) / moment)) < 1e-40
+
+
+def test_products_of_vectors_and_quaternions_are_those_of_the_books():
+    """Of the units i j = k and so on; turning by q is q v q*."""
+    unit = {name: tuple(int(k == place) for k in range(4)) for place, name in enumerate('ijk1')}
+    for a, b, c in ('ijk', 'jki', 'kij', 'i1i', '1jj', 'k1k', '111'):
+        assert inputs.product(unit[a], unit[b]) == unit[c]
+        if c != a != b != c:
+            assert inputs.product(unit[b], unit[a]) == tuple(-x for x in unit[c])
+            assert inputs.cross(unit[a][:3], unit[b][:3]) == unit[c][:3]
+            assert inputs.cross(unit[b][:3], unit[a][:3]) == tuple(-x for x in unit[c][:3])
+    for a in 'ijk1':
+        assert inputs.product(unit[a], unit[a]) == tuple(
+            x if a == '1' else -x for x in unit['1'])
+    assert inputs.dot((1, 2, 3), (4, 5, 6)) == 32
+    q, v = tuple(mpf(x) / 10 for x in (1, 5, -5, 7)), (mpf(2), mpf(-3), mpf(5))
+    turned = inputs.product(inputs.product(q, (*v, mpf(0))), (-q[0], -q[1], -q[2], q[3]))[:3]
+    assert apart(inputs.turned(q, v), turned) < 1e-14
+    assert apart(inputs.turned_back(q, turned), v) < 1e-14
+    assert inputs.unit((mpf(3), mpf(0), mpf(-4))) == (mpf(3) / 5, 0, mpf(-4) / 5)
 
 
 @pytest.mark.parametrize('name', suite.NAMES + suite.ON_A_PLANE)
