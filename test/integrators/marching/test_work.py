@@ -54,13 +54,13 @@ def seen(times, last, many=1, most=1000):
     (0.5, 1, math.log(32))])    # so many are done at the sixth look
 def test_steps_that_double_in_even_times_are_hopeless_where_too_many_would_be_made(
         most, many, end):
-    """At t = log(n/64) s after n steps; 100 times as many are allowed for each of the times.
+    """At t = 3 log(n/64) s after n steps; 100 times as many are allowed for each of the times.
 
     The first look has no doubling, the second none before it; then come four that are no slower.
     """
-    times = [math.log(2.0) * k for k in range(6)]
-    assert seen(times, end - 0.01, many, most) == [False] * 6
-    assert seen(times, end + 0.01, many, most) == [False] * 5 + [True]
+    times = [3.0 * math.log(2.0) * k for k in range(6)]
+    assert seen(times, 3.0 * end - 0.01, many, most) == [False] * 6
+    assert seen(times, 3.0 * end + 0.01, many, most) == [False] * 5 + [True]
 
 
 @pytest.mark.parametrize(('slower', 'hopeless'), [(1.0, True), (1.045, True), (1.055, False)])
@@ -194,19 +194,22 @@ def test_another_target_begins_the_count_of_the_pace_anew():
 
 # ---------------------------------------------------------------------------- slices, and words
 
-@pytest.mark.parametrize(('settings', 'slices'), [
-    ({}, [64]), ({'most': 10}, [10]), ({'most': 100}, [64]),
-    ({'dear': FIRST // 5}, [5]),
-    ({'made': 60, 'doublings': 1}, [4, 64]), ({'made': 1000, 'doublings': 1}, [1, 64]),
-    ({'made': 32, 'doublings': 1, 'most': 10}, [10])])
-def test_a_slice_ends_at_what_comes_next(settings, slices):
+@pytest.mark.parametrize(('settings', 'counted', 'slices'), [
+    ({}, 0, [64]), ({'most': 10}, 0, [10]), ({'most': 100}, 0, [64]), ({'most': 100}, 50, [50]),
+    ({'dear': FIRST // 5}, 0, [5]), ({'dear': 10 * FIRST}, 0, [1]), ({}, FIRST - 9, [9]),
+    ({}, 8 * FIRST, [1]), ({'made': 60, 'doublings': 1}, 0, [4, 64]),
+    ({'made': 1000, 'doublings': 1}, 0, [1, 64]), ({'doublings': 1}, 40, [24, 64]),
+    ({'made': 32, 'doublings': 1, 'most': 10}, 0, [10])])
+def test_a_slice_ends_at_what_comes_next(settings, counted, slices):
     """The bound, the look ahead, the next doubling; one step where that is past already.
 
     The first slice is of 64 steps; the clock has no say in it, nor in what is less.
     """
     if 'doublings' in settings:
         settings = settings | {'doublings': Doublings(1e9, 1)}
-    march, found = Work('a march', **{'most': None} | settings), []
+    march, found = begun(1.0, **settings), []
+    if counted:
+        march.count(counted, 0.5, 1.0)
 
     def follow(limit):
         found.append(limit)
@@ -214,7 +217,7 @@ def test_a_slice_ends_at_what_comes_next(settings, slices):
     march.go(follow, lambda: 0.0, 1.0)
     assert found[0] == slices[0]
     assert found[1:] >= slices[1:]    # whatever the clock says: the next doubling is far
-    assert march.done == sum(found[:-1])
+    assert march.done == counted + sum(found[:-1])
 
 
 def test_what_is_said_counts_from_the_last_target_on_and_from_the_origin():
