@@ -14,18 +14,25 @@ from rigid_body_sim.mechanics.contact.parameters import CONTACT
 
 pytestmark = pytest.mark.without_numba
 
+PLACE = UNKNOWNS.part('place').first
 FAINT = 2.0 ** -9    # m/s, half of what is rounding
 
 
-def hop(v, a, j, pace=1.0, begin=0.0):
+def hop(v, a, j, pace=1.0):
     """Return how long the first step may be where the gap is v t + a t^2/2 + j t^3/6."""
+    seen = []
+
     def rate(p, y, row):
-        t = y[TIME] - begin
-        row[TIME], row[GAP] = 1.0, v + t * (a + 0.5 * j * t)
+        t = y[TIME]
+        row[TIME], row[PLACE], row[GAP] = 1.0, 3.0, v + t * (a + 0.5 * j * t)
+        seen.append((t, y[PLACE]))
     p, y, work = np.zeros(CONTACT.size), np.zeros(UNKNOWNS.size), np.zeros((3, ROW.size))
-    p[SWIFT], y[TIME] = 4.0, begin
+    p[SWIFT] = 4.0
     rate(p, y, work[0])
-    return _hop(types.SimpleNamespace(rate=rate, ROUNDING=2.0 ** -10), p, y, work, pace)
+    found = _hop(types.SimpleNamespace(rate=rate, ROUNDING=2.0 ** -10), p, y, work, pace)
+    short = 2.0 ** -12 / pace
+    assert seen == [(n * short, 3.0 * n * short) for n in range(3)]
+    return found
 
 
 @pytest.mark.parametrize(('v', 'a', 'j', 'end'), [
