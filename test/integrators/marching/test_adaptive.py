@@ -23,19 +23,19 @@ from rigid_body_sim.integrators.marching.points import (
 
 pytestmark = pytest.mark.without_numba
 
-# p: C, a constant error, the step above which errors are no numbers, the squared scale
+# p: C, a constant error, the step above which errors are no numbers, the first squared scale
 TRIAL = """
 def trial(p, w, y, c, k0, h, scales):
     tried.append(h)
     error = p[0] * h ** 8 + p[1] if h <= p[2] else math.nan if p[2] > 0.0 else math.inf
-    return (y[0] + k0[0] * h,), c, (p[3],), error
+    return (y[0] + k0[0] * h,), c, (p[3], 1.0), error
 tried = []
 """
 MARCH = specialise(
     adaptive, trial=TRIAL, SIZE='SIZE = 1\n', ORDER='ORDER = 8\n',
     load=unroll.load_source('load', 1), put=unroll.put_source('put', 1),
-    load_scales=unroll.load_source('load_scales', 1),
-    put_scales=unroll.put_source('put_scales', 1), rate='def rate(p, y):\n    return (1.0,)\n',
+    load_scales=unroll.load_source('load_scales', 2),
+    put_scales=unroll.put_source('put_scales', 2), rate='def rate(p, y):\n    return (1.0,)\n',
     settled='def settled(y, c):\n    return y, (c[0] + 1.0,)\n',    # counts the steps
     fastest='def fastest(y, k):\n    return y[0]\n')
 
@@ -48,7 +48,7 @@ def start(planned, tolerance=1e-7, C=1.0, error=0.0, most=math.inf, square=0.0, 
     return np.array([C, error, most, square]), control, point, point.copy()
 
 
-@pytest.mark.parametrize(('speed', 'planned'), [(5.0, 0.02), (0.0, 0.01)])
+@pytest.mark.parametrize(('speed', 'planned'), [(5.0, 0.02), (0.5, 0.2), (0.0, 0.01)])
 def test_the_first_step_is_short_beside_the_fastest_rate(speed, planned):
     """The eighth root of 1e-8, over a rate; of a body that rests over 10/s."""
     p, control, point, _ = start(0.0, tolerance=1e-8)
