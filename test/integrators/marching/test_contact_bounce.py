@@ -53,6 +53,10 @@ CASES = {
     'a plane that would pull': ((True, 1.0), [(-2.0, SLIP, True)], [], -2.0, True, SLIP),
     'no tipping, away': (
         (True, 1.0), [(2.0, STOP, True)], [(False, (*SLIP, 0.02))], 2.0, True, SLIP),
+    'no tipping, along x': (
+        (True, 1.0), [(0.0, STOP, True)], [(False, (0.02, 0.0, 0.02))], 0.0, True, (0.02, 0.0)),
+    'no tipping, along y': (
+        (True, 1.0), [(0.0, STOP, True)], [(False, (0.0, 0.02, 0.02))], 0.0, True, (0.0, 0.02)),
     'no tipping, along': (
         (True, 1.0), [(2.0, SLIP, True)], [(False, (*DEAD, 0.005))], 2.0, False, STOP),
     'no tipping, down': (
