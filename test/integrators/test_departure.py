@@ -53,7 +53,7 @@ def state_of(scene, omega, axes=SKEW):
 MOTIONS = {
     'from the least moment': ((1.0, 2.0, 2.5), 0, 1.5, C),
     'from the middle one': ((1.0, 2.0, 2.5), 1, -1.5, 0.1),
-    'from the least without turns': ((1.0, 2.0, 2.5), 0, 0.05, 150.0),
+    'from the least without turns': ((1.0, 2.0, 2.5), 0, 0.05, 300.0),
     'to the largest': ((1.0, 2.0, 2.5), 2, 1.5, C),
     'to the largest without turns': ((1.0, 2.0, 2.5), 2, -1.5, 3.0),
     'to the one that differs': ((1.5, 1.5, 2.5), 2, 1.5, C),
