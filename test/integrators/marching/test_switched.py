@@ -36,10 +36,11 @@ def test_a_body_at_rest_is_looked_at_as_often_as_the_torque_changes(slope, begin
     """By a tenth of the grip, 2 N m, at most; by less than a hundredth, and the next is later.
 
     They are from 2^-20 to 2^-4 s apart; `spacings` are powers of 2. A torque of 4 N m/s changes
-    by 0.25 N m in 2^-4 s and by 0.125 in half that; one of 1 N m/s by 0.016 in 2^-6 s.
+    by 0.25 N m in 2^-4 s and by 0.125 in half that; one of 1 N m/s by 0.016 in 2^-6 s. What it
+    was before does not count.
     """
     of = types.SimpleNamespace(
-        _seen=1.0, _spacing=2.0 ** begin, _pull=lambda out: slope * float(out[0]),
+        _seen=1.0, _spacing=2.0 ** begin, _pull=lambda out: slope * max(float(out[0]), of._seen),
         _bound=types.SimpleNamespace(equations=types.SimpleNamespace(in_field=True, grip=2.0)))
     stretch = types.SimpleNamespace(vector=np.zeros(STATE_SIZE), end=9.0)
     for spacing in spacings:
