@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What Stepped does around a march, on made-up ones: its limits, its checks, what it passes on."""
+
+import math
+import types
+
+import numpy as np
+import pytest
+from near import near
+
+from rigid_body_sim.errors import BadInput, NotConverged
+from rigid_body_sim.integrators import solver
+from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED
+from rigid_body_sim.integrators.solver import Stepped, _latest, _naming
+from rigid_body_sim.scene.scene import load_scene
+
+pytestmark = pytest.mark.without_numba
+
+METHOD = types.SimpleNamespace(NAME='dop8')
+
+
+@pytest.mark.parametrize(('begin', 'rate', 'latest'), [
+    (0.0, 2.0, 2.0 ** 51), (3.0, 2.0 ** 50, 7.0), (3.0, 0.0, 1e300)])
+def test_a_body_turns_until_its_radians_are_more_than_doubles_count(begin, rate, latest):
+    """They are 2^52; of one that does not turn no time is too late that is a double."""
+    assert _latest(begin, rate) == near(latest, rel=1e-15)    # 0
+
+
+@pytest.mark.parametrize(('first', 'last', 'error'), [
+    (2.0, 2.0, None), (2.0, 6.0, None), (2.5, 6.5, NotConverged), (1.9, 3.0, BadInput),
+    (2.0, math.inf, BadInput), (math.nan, 3.0, BadInput), (3.0, math.nan, BadInput)])
+def test_times_are_asked_for_from_the_start_to_where_turns_count(first, last, error):
+    """It turns with 13 rad/s."""
+    vector = np.zeros(14)
+    vector[5:8] = 3.0, -4.0, 12.0
+    of = types.SimpleNamespace(begin=2.0, _latest=6.0, vector=vector, method=METHOD,
+                               scene=types.SimpleNamespace(name='a'))
+    if error is None:
+        Stepped._within(of, first, last)
+        return
+    with pytest.raises(error) as found:
+        Stepped._within(of, first, last)
+    if error is NotConverged:
+        assert found.value.time == 6.0
+        assert 'turns with 13.0 rad/s; until 6.5 s' in str(found.value)
+
+
+@pytest.mark.parametrize(('status', 'step', 'value', 'again'), [
+    (REACHED, None, 1.0, False), (REACHED, None, 1e60, False), (REACHED, 0.1, 1e49, False),
+    (REACHED, 0.1, 1e51, True), (REACHED, 0.1, -1e51, True), (REACHED, 0.1, math.nan, True),
+    (LOST, None, 1.0, True), (PAUSED, 0.1, 1.0, True)])
+def test_a_run_is_left_to_a_course_where_one_call_does_not_do(status, step, value, again):
+    """So is what steps of one size have made large: its energy may be no double."""
+    asked, room = [], object()
+
+    def final(given, start, time, out):
+        assert given is room
+        out[:] = [start, time, value]
+        return status
+    of = types.SimpleNamespace(
+        _departs=False, _may_wind=False, _carried=False, step=step,
+        _run=lambda *them: asked.append(them[:2]),
+        _bound=types.SimpleNamespace(runner=lambda of: (final, room)))
+    out = np.zeros(3)
+    Stepped.runner(of)(1.0, 2.0, out)
+    assert asked == [(1.0, 2.0)] * again
+    assert out[:2].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize('what', ['_departs', '_may_wind', '_carried', 'none'])
+def test_what_is_more_than_a_march_runs_as_a_course(what):
+    of = types.SimpleNamespace(_departs=False, _may_wind=False, _carried=False, _run=object(),
+                               _bound=types.SimpleNamespace(runner=lambda of: None))
+    if what != 'none':
+        setattr(of, what, True)
+        of._bound = None    # it is not asked
+    assert Stepped.runner(of) is of._run
+
+
+@pytest.mark.parametrize(('step', 'may', 'entry', 'time'), [
+    (None, True, math.inf, 4.0), (None, True, 1e300, None), (None, False, math.inf, None),
+    (0.1, True, 1e200, 4.0), (0.1, True, 1e40, None), (None, True, -math.inf, 4.0)])
+def test_states_that_doubles_do_not_hold_are_told(step, may, entry, time):
+    """Of steps of one size the energy counts too: that of 1e200 rad/s is no double."""
+    scene = load_scene('free_body')
+    of = types.SimpleNamespace(_may_leave_doubles=may, step=step, method=METHOD, scene=scene,
+                               _mechanics=solver.parameters(scene))
+    rows = np.tile(scene.initial.vector, (3, 1))
+    rows[:, 0] = 3.0, 5.0, 4.0
+    rows[1:, 6] = entry
+    if time is None:
+        Stepped._check(of, rows)
+        return
+    with pytest.raises(NotConverged) as found, np.errstate(all='ignore'):
+        Stepped._check(of, rows)
+    assert found.value.time == time
+
+
+@pytest.mark.parametrize(('step', 'wanted', 'departs', 'slack', 'until'), [
+    (None, math.inf, False, 1e-8, 7.0), (None, 1e-9, True, 1e-9, 3.5),
+    (0.1, 1.0, False, 0.0, 7.0)])
+def test_jumps_below_a_hundredth_of_the_accuracy_are_no_matter_to_the_ledger(
+        step, wanted, departs, slack, until, monkeypatch):
+    """Nor does it sum beyond the time in which dissipation takes energy."""
+    given = []
+
+    class Quadrature:
+        def __init__(self, actors, states, vector, slack, kinks):
+            given.append(slack)
+
+        def until(self, time):
+            return time
+    monkeypatch.setattr(solver, 'Quadrature', Quadrature)
+    course = types.SimpleNamespace(states=None, kinks=None, entries_until=lambda time: 0.5 * time)
+    of = types.SimpleNamespace(
+        _within=lambda *times: None, _bound=types.SimpleNamespace(KEEPS_ENTRIES=False),
+        _ledger=types.SimpleNamespace(actors=types.SimpleNamespace(acts=True)), step=step,
+        accuracy=1e-6, wanted=wanted, vector=None, _course=course, _departs=departs,
+        _quadrature=None)
+    assert [Stepped.entries(of, 7) for _ in range(2)] == [until] * 2
+    assert given == [slack]
+
+
+def test_events_are_those_after_a_time():
+    """A watcher of many tells those of a tick again."""
+    watcher = types.SimpleNamespace(
+        events=lambda until, tick: [(1.0, 'a'), (2.0, 'b'), (3.0, 'c')])
+    of = types.SimpleNamespace(_course=types.SimpleNamespace(TELLS_EVENTS=False), _watcher=watcher)
+    assert Stepped.events(of, 2.0, 3.0) == [(3.0, 'c')]
+
+
+def test_what_fails_in_a_body_of_many_names_it():
+    with pytest.raises(NotConverged, match=r'^body 7: too far$') as found, _naming(7):
+        raise NotConverged('too far', 2.5)
+    assert found.value.time == 2.5
