@@ -19,6 +19,7 @@ pytestmark = pytest.mark.without_numba
     # a difference of a few roundings is none
     ([0.5, 0.75, 1.0], [[0.25, 1e-17, 0], [1e-17, 0.375, 0], [0, 0, 0.5]], Fraction(1, 2)),
     ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 0], [0, 0, 0.5 - 2.0 ** -53]], Fraction(1, 2)),
+    ([0.5, 0.5, 0.0], [[0.25, 0, 0], [0, 0.25, 0], [0, 0, 0]], Fraction(1, 2)),
     # nothing turns about an axis without a moment
     ([0.5, 0.5, 0.0], [[0.25, 0, 0], [0, 0.25, 0], [0, 0, 0.7]], Fraction(1, 2)),
     ([0.5, 0.0, 0.5], [[0.25, 0.1, 0], [0.1, 0.7, 0], [0, 0, 0.25]], Fraction(1, 2)),
@@ -26,7 +27,7 @@ pytestmark = pytest.mark.without_numba
     ([0.5, 0.75, 1.0], [[0.24, 0, 0], [0, 0.375, 0], [0, 0, 0.5]], None),
     ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 0], [0, 0, 0.5 + 1e-14]], None),
     ([0.5, 0.75, 1.0], [[0.25, 0.01, 0], [0.01, 0.375, 0], [0, 0, 0.5]], None),
-    ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 1e-14], [0, 1e-14, 0.5]], None)])
+    ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 1e-15], [0, 1e-15, 0.5]], None)])
 def test_drag_in_proportion_to_the_inertia_has_a_rate(monkeypatch, inertia, drag, rate):
     """It is exact; there is none where the drag has another shape."""
     total = types.SimpleNamespace(drag=tuple(map(tuple, (-np.array(drag)).tolist())))

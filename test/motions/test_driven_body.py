@@ -84,13 +84,13 @@ def test_a_torque_fixed_in_the_world_drives_a_sphere():
 
 
 @pytest.mark.parametrize(('inertia', 'torque', 'rotor', 'frame'), [
-    ((I1, I1, I), (0.1, 0.0, 0.5), None, 'body'), ((I1, I1, I), (0.0, 1e-13, 0.5), None, 'body'),
-    ((I1, I1, I), None, (0.1, 0.0, 0.5), 'body'), ((I1, I1, I), None, (0.0, 1e-13, 0.5), 'body'),
+    ((I1, I1, I), (0.1, 0.0, 0.5), None, 'body'), ((I1, I1, I), (0.0, 1e-15, 0.5), None, 'body'),
+    ((I1, I1, I), None, (0.1, 0.0, 0.5), 'body'), ((I1, I1, I), None, (0.0, 1e-14, 0.5), 'body'),
     ((I1, I1, I), (0.0, 0.0, 0.5), (0.0, 0.1, 0.0), 'body'),
     ((0.31, I1, I1 + 0.1), (0.0, 0.0, 0.5), None, 'body'),
     ((I1, I1, I), (0.0, 0.0, 0.5), None, 'world'),
     ((I1, I1, I1), (0.0, 0.0, 0.5), (0.0, 0.0, 0.1), 'world'),
-    ((I1, I1, I1), (0.0, 0.0, 0.5), (0.0, 1e-13, 0.1), 'body'),
+    ((I1, I1, I1), (0.0, 0.0, 0.5), (0.0, 1e-15, 0.1), 'body'),
     ((I1, I1, 0.0), (0.0, 0.0, 0.5), None, 'body')])
 def test_what_has_no_closed_form_has_no_drive(inertia, torque, rotor, frame):
     assert drive(scene_of(inertia, torque, rotor, frame)) is None
