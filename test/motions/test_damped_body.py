@@ -26,7 +26,7 @@ pytestmark = pytest.mark.without_numba
     ([0.5, 0.5, 0.0], [[0, 0, 0], [0, 0, 0], [0, 0, 0.7]], 0), ([0, 0, 0], np.eye(3), 0),
     ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 0], [0, 0, 0.51]], None),
     ([0.5, 0.75, 1.0], [[0.24, 0, 0], [0, 0.375, 0], [0, 0, 0.5]], None),
-    ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 0], [0, 0, 0.5 + 1e-14]], None),
+    ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 0], [0, 0, 0.5 + 1e-15]], None),
     ([0.5, 0.75, 1.0], [[0.25, 0.01, 0], [0.01, 0.375, 0], [0, 0, 0.5]], None),
     ([0.5, 0.75, 1.0], [[0.25, 0, 0], [0, 0.375, 1e-15], [0, 1e-15, 0.5]], None)])
 def test_drag_in_proportion_to_the_inertia_has_a_rate(monkeypatch, inertia, drag, rate):
@@ -34,5 +34,5 @@ def test_drag_in_proportion_to_the_inertia_has_a_rate(monkeypatch, inertia, drag
     total = types.SimpleNamespace(drag=tuple(map(tuple, (-np.array(drag)).tolist())))
     monkeypatch.setattr(damped_body, 'total_pull', lambda scene: total)
     assert damped_body.damping(parse_scene(
-        f'scene: s\nbody: {{mass: 1.0, inertia: {inertia}}}\nconstraint: free\neffects: []\n'
-        'initial: {}\n')) == rate
+        f'scene: s\nbody: {{mass: 1.0, inertia: {inertia}, center_of_mass: [0, 0, 1]}}\n'
+        'constraint: free\neffects: []\ninitial: {}\n')) == rate
