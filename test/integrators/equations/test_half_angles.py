@@ -52,3 +52,11 @@ def test_an_exponential_of_half_angles_is_a_series_of_its_own():
     found, = Sums(PHI).of([tree.times(NAMES['s'], one)])
     known = {PHI: 0.7}
     assert value(found, known) == near(math.sin(0.35) * math.exp(0.5 * math.sin(0.7)), rel=1e-15)
+
+
+@pytest.mark.parametrize('factor', [-2.0, -1.0, -0.5, 1.0, 3.0])
+def test_a_number_before_a_sum_multiplies_all_of_it(factor):
+    one = tree.term('*', tree.number(factor), tree.plus(NAMES['s'], RATE))
+    found, = Sums(PHI).of([one])
+    assert value(found, {PHI: 0.7, RATE: 1.3}) == near(
+        factor * (math.sin(0.35) + 1.3), rel=1e-15)
