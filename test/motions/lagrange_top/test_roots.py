@@ -33,6 +33,13 @@ def test_the_largest_of_three_real_roots_has_the_digits_of_pairs(roots):
         assert abs(found - r1) <= mpf(2) ** -100 * size / slope    # measured: 2^-104
 
 
+@pytest.mark.parametrize('root', [0.0, 1.0, 4.0])
+def test_three_equal_roots_are_found_at_once(root):
+    """There the cubic has no slope to divide by."""
+    coefficients = (-3.0 * root, 0.0), (-3.0 * root * root, 0.0), (-root ** 3, 0.0)
+    assert largest_root(*coefficients) == (root, 0.0)
+
+
 @pytest.mark.parametrize('difference', ['0.7', '-0.7', '1e9', '-1e9', '0', '1e-20'])
 @pytest.mark.parametrize('product', ['0.3', '1e-12', '2e10'])
 def test_two_numbers_follow_from_their_difference_and_their_product(difference, product):
