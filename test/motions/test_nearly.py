@@ -181,3 +181,54 @@ def test_a_small_change_of_attitude_is_a_vector_whichever_sign_quaternions_have(
     found = nearly._between(p.as_quat(), signs * (Rotation.from_rotvec(small) * p).as_quat())
     # measured: 4e-16, from the rounding of quaternions
     assert np.abs(found - small).max() < 2e-15
+
+
+A, CLOSE, FAR = 0.3, 0.3 * (1.0 + 6e-10), 0.3 * (1.0 + 2e-9)
+CHAINED = 0.3 * (1.0 + 1.2e-9)
+
+
+@pytest.mark.parametrize('order', [(0, 1, 2), (1, 2, 0), (2, 1, 0), (0, 2, 1)])
+@pytest.mark.parametrize(('moments', 'equal'), [
+    ((A, CLOSE, 0.5), (0.5 * (A + CLOSE),) * 2 + (0.5,)),
+    ((0.1, A, CLOSE), (0.1,) + (0.5 * (A + CLOSE),) * 2), ((A, FAR, 0.5), (A, FAR, 0.5)),
+    ((A, CLOSE, CHAINED), (0.5 * (A + CHAINED),) * 3), ((A, A, 0.5), (A, A, 0.5))])
+def test_moments_near_each_other_become_the_middle_of_their_group(order, moments, equal):
+    """Where each is near the next, the group is all of them."""
+    assert nearly._made_equal(tuple(moments[k] for k in order)) == near(
+        tuple(equal[k] for k in order), rel=1e-15)
+
+
+def body(moments, constraint='pivot', center=(0, 0, 0)):
+    """Return a scene of a body with these moments about its origin, under gravity."""
+    return parse_scene(json.dumps({
+        'scene': 'body', 'constraint': constraint, 'effects': [{'gravity': {'g': 1.0}}],
+        'body': {'mass': 0.5, 'inertia': moments, 'inertia_about': 'origin',
+                 'center_of_mass': center}, 'initial': {}}))
+
+
+@pytest.mark.parametrize('k', [0, 1, 2])
+def test_moments_that_are_made_equal_differ_by_what_they_were(k):
+    """On a hinge no difference turns the body; one that is not made equal counts for nothing."""
+    moments = [0.0, 0.0, 0.0]
+    moments[k - 2], moments[k - 1], moments[k] = A, CLOSE, 0.5
+    scene, equal = body(moments), nearly._made_equal(tuple(moments))
+    assert equal[k - 2] == equal[k - 1]
+    assert nearly.differ(scene, equal)
+    assert not nearly.differ(scene, tuple(moments))
+    assert not nearly.differ(body([A if j != k else 0.5 for j in range(3)]), equal)
+    hinge = {'hinge': {'axis': [int(j == k) for j in range(3)]}}
+    assert not nearly.differ(body(moments, hinge), equal)
+
+
+@pytest.mark.parametrize('k', [0, 1, 2])
+@pytest.mark.parametrize(('off', 'told'), [(9e-11, True), (1.1e-10, False)])
+def test_a_centre_of_mass_counts_as_on_the_axis_up_to_a_share_of_its_distance(k, off, told):
+    """The share is 1e-9; what is told is its part across the axis of a body held at a point."""
+    center, equal = [0.0, 0.0, 0.0], [A, A, A]
+    center[k], center[k - 1], equal[k] = -0.1, off, 0.02
+    across = [off if j == (k - 1) % 3 else 0.0 for j in range(3)]
+    scene = body(equal, center=center)
+    assert nearly._off_axis(scene, tuple(equal)) == (across if told else [0.0] * 3)
+    assert nearly._off_axis(scene, (0.1, 0.2, 0.3)) == [0.0] * 3
+    assert nearly._off_axis(scene, (A, A, A)) == [0.0] * 3
+    assert nearly._off_axis(body(equal, 'free', center), tuple(equal)) == [0.0] * 3

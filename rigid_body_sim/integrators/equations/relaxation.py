@@ -51,7 +51,7 @@ def stiff_relaxations(scene, unknowns):
         return found
     motion = (hypot3(*scene.initial.angular_velocity.tolist()) + swing_rate(scene)
               + math.sqrt(drive(scene, None)))
-    fastest = max((rate for one in found for rate in one.rates), default=0.0)
+    fastest = max(rate for one in found for rate in one.rates)
     return found if fastest > STIFF * motion else []
 
 

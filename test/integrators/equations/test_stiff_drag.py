@@ -6,8 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 
-from rigid_body_sim.integrators.equations.relaxation import relaxations
+from rigid_body_sim.integrators.equations.relaxation import relaxations, stiff_relaxations
+from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -58,6 +61,63 @@ def test_the_rates_are_those_of_the_torque(drag):
     expected = np.sort(np.linalg.eigvals(np.linalg.solve(inertia, turning)).real)
     [found] = relaxations(scene, 10)
     np.testing.assert_allclose(np.sort(found.rates), expected, rtol=1e-13)    # measured: 9e-16
+
+
+def test_the_coordinates_relax_each_at_its_rate():
+    """-I^-1 K is diagonal in them, and they lead back to omega, in the frame of the scene."""
+    scene = scene_of(f'angular: {MATRIX}, linear: {MATRIX}', 'free', center=ABOVE)
+    [found] = relaxations(scene, 7)
+    R = np.array(matrix(*scene.frame.axes))
+    slowed = R.T @ np.array(json.loads(MATRIX)) @ R / np.array(scene.frame.moments)[:, None]
+    assert found.first == 4
+    # measured: 4e-16, 4e-15
+    assert found.into @ found.back == pytest.approx(np.eye(3), abs=4e-15)
+    assert found.into @ slowed @ found.back == pytest.approx(np.diag(found.rates), abs=4e-14)
+
+
+@pytest.mark.parametrize(('linear', 'unknowns', 'rates'), [
+    ('2.0', 13, [4.0 / 3.0] * 3), ('2.0', 14, [4.0 / 3.0] * 3), ('2.0', 7, None)])
+def test_a_body_that_flies_is_slowed_at_the_rate_c_over_m(linear, unknowns, rates):
+    found = relaxations(scene_of(f'linear: {linear}', 'free'), unknowns)
+    if rates is None:
+        assert found == []
+        return
+    [one] = found
+    assert (one.first, one.rates) == (10, near(rates, rel=1e-15))
+    assert (one.into == np.eye(3)).all()
+    assert (one.back == np.eye(3)).all()
+
+
+@pytest.mark.parametrize('drag', [NUMBERS, MATRICES])
+def test_on_a_hinge_the_part_of_the_drag_along_the_axis_counts(drag):
+    n, arm = np.array([0.48, 0.6, 0.64]), np.array([0.1, 0.0, 0.2])
+    scene = scene_of(drag, '{hinge: {axis: [0.48, 0.6, 0.64]}}', center=ABOVE)
+    linear, angular = ((np.array(json.loads(MATRIX)),) * 2 if drag == MATRICES
+                       else (2.0 * np.eye(3), 0.7 * np.eye(3)))
+    moved = np.cross(n, arm)
+    [found] = relaxations(scene, 2)
+    expected = (n @ angular @ n + moved @ linear @ moved) / (
+        n @ scene.body.about_origin.matrix @ n)
+    assert (found.first, found.rates) == (1, [near(expected, rel=1e-14)])
+    assert found.into.tolist() == found.back.tolist() == [[1.0]]
+
+
+@pytest.mark.parametrize(('share', 'stiff'), [(0.99, False), (1.01, True)])
+@pytest.mark.parametrize('more', ['', ', gravity: {g: 9.81}, torque: {value: [0.02, 0, 0.03]}'])
+def test_drag_is_stiff_beyond_twenty_times_the_rates_of_the_motion(share, stiff, more):
+    """The motion is that of the start, of a swing, and of what a drive reaches in a radian."""
+    def with_drag(k):
+        return parse_scene(
+            'scene: drag\nbody: {mass: 1.5, inertia: [0.3, 0.2, 0.15], center_of_mass: [0, 0, 0.2]'
+            f', inertia_about: origin}}\nconstraint: pivot\neffects: [drag: {{angular: {k!r}}}'
+            f'{more}]\ninitial: {{angular_velocity: [0.3, 0, 0.4]}}\n')
+    scene = with_drag(1.0)
+    motion = 0.5 + swing_rate(scene) + math.sqrt(drive(scene, None))
+    assert (motion > 0.5) == bool(more)
+    found = stiff_relaxations(with_drag(20.0 * share * motion * 0.15), 7)
+    assert bool(found) is stiff
+    assert stiff_relaxations(parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 1, 1]}\n'
+                                         'constraint: free\neffects: []\ninitial: {}\n'), 7) == []
 
 
 @pytest.mark.parametrize('square', [2.0e5, 1.0e6])

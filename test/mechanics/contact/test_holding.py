@@ -169,3 +169,31 @@ def test_the_way_of_a_rolling_that_has_just_begun_turns_with_time(onset, angle):
         way=(0.6, 0.8), onset=onset, turn=2.0, since=1.0)
     x, z = np.array([[1.0, -angle], [angle, 1.0]]) @ c.way / np.hypot(1.0, angle)
     assert way_at(c, 1.3) == pytest.approx((x, z), abs=1e-15)    # 1.1e-16
+
+
+@pytest.mark.parametrize(('surface', 'changes', 'ahead'), [
+    ('sphere', {'way': (0.6, 0.8), 'onset': 1.0}, lambda e1, e2, e, b: 0.6 * e1 + 0.8 * e2),
+    ('torus', {'way': (-0.8, 0.6), 'onset': 1.0}, lambda e1, e2, e, b: 0.6 * e2 - 0.8 * e1),
+    ('disk', {'way': (1.0, 0.0)}, lambda e1, e2, e, b: e),
+    ('disk', {'way': (-1.0, 0.0)}, lambda e1, e2, e, b: -e),
+    ('torus', {'way': (1.0, 0.0), 'rim': 1.0}, lambda e1, e2, e, b: b),
+    ('torus', {'way': (-1.0, 0.0), 'rim': 1.0}, lambda e1, e2, e, b: -b),
+    ('torus', {'way': (0.0, 0.0)}, lambda e1, e2, e, b: 0.0 * e)])
+def test_the_power_of_rolling_friction_is_against_the_way_of_its_phase(surface, changes, ahead):
+    """C N against the velocity along the way, and what is viscous against the velocity itself.
+
+    That is for any omega, so the couples are the right ones. What is held takes no power.
+    """
+    c, rows = parameters(surface, ROLLS)._replace(rolling_viscous=0.02, **changes), axes(4)
+    e1, e2, n = map(np.array, rows)
+    e = np.array(tangent(rows[2]))
+    way = ahead(e1, e2, e, np.cross(e, n))
+    for omega in np.random.default_rng(2).normal(size=(3, 3)):
+        moved = np.array(shifted(c.kind, c.size, rows[2], tuple(np.cross(n, omega))))
+        at = posture(c, rows, tuple(omega), tuple(moved))
+        viscous, wrung, speed, film = rolling_couples(c, at, c.way)
+        assert film == 0.0
+        assert np.dot(wrung, omega) == pytest.approx(-0.01 * (way @ moved), abs=1e-16)
+        counts = moved @ np.cross(e, n) if c.rim > 0.0 else np.linalg.norm(moved)
+        assert np.dot(viscous, omega) == near(-0.02 * counts ** 2, rel=1e-12)
+        assert speed == (near(abs(counts), rel=1e-14) if np.any(way) else 0.0)

@@ -3,6 +3,7 @@
 
 import json
 import math
+import types
 
 import numpy as np
 import pytest
@@ -184,3 +185,38 @@ def test_top_at_rest_where_nothing_turns_it_stays(overrides, tilt):
         np.testing.assert_allclose(state[1:5], start, rtol=0.0, atol=4e-16)
         assert not state[5:8].any()
     assert motion.next_event(anchor, 0.0) == (math.inf, 0)
+
+
+TURNED = (0.1, -0.5, 0.5, 0.7)
+
+
+@pytest.mark.parametrize('k', [0, 1, 2])
+@pytest.mark.parametrize('way', [1.0, -1.0])
+@pytest.mark.parametrize(('axes', 'off', 'found'), [
+    ((0.0, 0.0, 0.0, 1.0), 0.0, True), ((0.5, 0.5, 0.5, 0.5), 0.0, True),
+    ((0.0, 0.0, 0.0, 1.0), 1e-300, False), (TURNED, 0.0, True), (TURNED, 1e-15, True),
+    (TURNED, 2e-15, False)])
+def test_the_axis_of_a_top_is_the_one_that_its_centre_of_mass_lies_on(k, way, axes, off, found):
+    """It points there; only where axes are turned does rounding count, by 8.9e-16 of 2 m."""
+    axis, across = np.zeros(3), np.zeros(3)
+    axis[k], across[k - 1] = way, off
+    center = rotate(*(np.array(axes) / np.linalg.norm(axes)), *(2.0 * axis + across))
+    moments = tuple(0.3 if j != k else 0.2 for j in range(3))
+
+    def axis_of(moments, center):
+        about = types.SimpleNamespace(moments=moments, axes=tuple(
+            (np.array(axes) / np.linalg.norm(axes)).tolist()))
+        return motion.symmetry_axis(types.SimpleNamespace(body=types.SimpleNamespace(
+            about_origin=about, center_of_mass=center)))
+    told = axis_of(moments, center)
+    assert (told is not None) is found
+    if found:
+        assert told[0] == k
+        assert rotate(*told[1], 0.0, 0.0, 1.0) == pytest.approx(
+            np.array(center) / 2.0, abs=2e-15)
+    assert axis_of((0.2, 0.3, 0.4), center) is None
+    # all axes of a round body are its own: that of the centre of mass is taken
+    assert axis_of((0.3, 0.3, 0.3), center)[0] == 2
+    assert rotate(*axis_of((0.3, 0.3, 0.3), center)[1], 0.0, 0.0, 1.0) == pytest.approx(
+        np.array(center) / 2.0, abs=2e-15)
+    assert axis_of((0.3, 0.3, 0.3), (0.0, 0.0, 0.0)) == (2, (0.0, 0.0, 0.0, 1.0))
