@@ -48,5 +48,5 @@ def _save(figure, folder, name, source, formats=FORMATS[:1]):
     paths = [folder / f'{stem}.{suffix}' for suffix in formats]
     for path in paths:
         figure.savefig(path)
-        figure.set_layout_engine(None)    # it keeps its layout, which costs two drawings
+        figure.set_layout_engine(None)    # the layout is made: any engine draws once more
     return paths

@@ -70,6 +70,10 @@ class DeferredCache:
     def _cache_as_callee(self):
         return _cache_of(self._function, callees.CalleeCache)
 
+    @property
+    def _present(self):
+        return self._cache_as_callee if callees.has_caller() else self._cache
+
     @contextlib.contextmanager
     def alone(self):
         """Keep other processes from compiling the kernel meanwhile: they wait, and then load it.
@@ -92,15 +96,13 @@ class DeferredCache:
     def load_overload(self, signature, target_context):
         """Return the compiled code for the types of a call, or None."""
         with _going_on():
-            cache = self._cache_as_callee if callees.has_caller() else self._cache
-            return cache.load_overload(signature, target_context)
+            return self._present.load_overload(signature, target_context)
         return None
 
     def save_overload(self, signature, data):
         """Keep the compiled code for the types of a call."""
         with _going_on():
-            cache = self._cache_as_callee if callees.has_caller() else self._cache
-            cache.save_overload(signature, data)
+            self._present.save_overload(signature, data)
 
     def flush(self):
         """Remove the compiled code."""

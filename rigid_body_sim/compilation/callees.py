@@ -2,8 +2,8 @@
 """Kernels that are compiled because another kernel calls them: their code is for that one alone.
 
 numba makes machine code of each function that it compiles, and a wrapper that takes arguments from
-Python. A caller needs neither: LLVM's code of the callee goes into its own. That is a third of all
-compiling, so a callee has just this code, until Python calls it itself.
+Python. A caller needs neither: LLVM's code of the callee goes into its own. So a callee has just
+this code, until Python calls it itself, which saves up to three tenths of a first run.
 """
 
 import contextlib

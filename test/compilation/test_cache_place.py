@@ -5,10 +5,10 @@ import fcntl
 import os
 import subprocess
 import sys
-import types
 
 import pytest
 import ros
+from made_clock import clock_of
 
 pytest.importorskip('numba')
 
@@ -55,13 +55,7 @@ def test_a_folder_that_is_gone_does_not_end_what_is_computed(tmp_path):
 def test_nobody_waits_for_a_lock_longer_than_is_patient(tmp_path, monkeypatch):
     """Looks at it 0, 1/4, 1/2 and 3/4 s after it began; without a holder one is enough."""
     from rigid_body_sim.compilation import cache
-    now, slept = [100.0], []
-
-    def sleep(seconds):
-        slept.append(seconds)
-        now[0] += seconds
-    monkeypatch.setattr(cache, 'time', types.SimpleNamespace(
-        monotonic=lambda: now[0], sleep=sleep))
+    _, slept = clock_of(monkeypatch, cache)
     monkeypatch.setattr(cache, 'PATIENCE', 1.0)
     monkeypatch.setattr(cache, 'AGAIN', 0.25)
     with (tmp_path / 'lock').open('wb') as other, (tmp_path / 'lock').open('wb') as mine:

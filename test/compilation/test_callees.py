@@ -10,8 +10,9 @@ import uuid
 
 import pytest
 
-from rigid_body_sim.compilation import callees, jit
+from rigid_body_sim.compilation import jit
 
+callees = pytest.importorskip('rigid_body_sim.compilation.callees')
 pytestmark = pytest.mark.skipif(not jit.HAVE_NUMBA, reason='about compiled code')
 KERNELS = """
 from rigid_body_sim.compilation.jit import compiled

@@ -26,7 +26,8 @@ def test_frames_are_named_after_the_namespace_or_as_asked(settings, names):
 
 
 @pytest.mark.parametrize('settings', [
-    {'world': 'body'}, {'world': ''}, {'body': ''}, {'namespace': '/a', 'world': '', 'body': ''}])
+    {'world': 'body'}, {'world': ''}, {'body': ''}, {'namespace': '/a', 'world': '', 'body': ''},
+    {'prefix': 'ball', 'world': ''}, {'prefix': 'ball', 'body': ''}])
 def test_frames_need_two_names_that_differ(settings):
     with pytest.raises(BadInput, match='two names that differ'):
         frames(**settings)

@@ -1,39 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of frames, and with which quality of service topics are offered."""
+"""With which quality of service topics are offered."""
 
 import types
 
 import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import state_topics
 from rigid_body_sim.node import publishing
-from rigid_body_sim.node.publishing import Publishing, frames_of
-
-
-def frames(namespace='/', **settings):
-    return frames_of(
-        types.SimpleNamespace(get_namespace=lambda: namespace), types.SimpleNamespace(
-            **{'frame_prefix': 'auto', 'world_frame': 'world', 'body_frame': 'body', **settings}))
-
-
-@pytest.mark.parametrize(('given', 'expected'), [
-    ({}, ('world', 'body', '')), ({'namespace': '/lab/left'},
-                                  ('lab/left/world', 'lab/left/body', 'lab/left/')),
-    ({'namespace': '/left', 'frame_prefix': ''}, ('world', 'body', '')),
-    ({'frame_prefix': 'ball_', 'world_frame': 'map'}, ('ball_map', 'ball_body', 'ball_'))])
-def test_frames_have_the_prefix_that_is_asked_or_the_namespace(given, expected):
-    found = frames(**given)
-    assert (found.world, found.body, found.prefix) == expected
-
-
-@pytest.mark.parametrize('given', [
-    {'world_frame': 'body'}, {'world_frame': ''}, {'body_frame': ''},
-    {'body_frame': '', 'frame_prefix': 'ball'}, {'world_frame': '', 'frame_prefix': 'ball'}])
-def test_two_frames_have_two_names(given):
-    with pytest.raises(BadInput, match='parameter body_frame: got the frames'):
-        frames(**given)
+from rigid_body_sim.node.publishing import Publishing
 
 
 class Node:

@@ -9,10 +9,10 @@ import errno
 import json
 import os
 import select
-import types
 
 import numpy as np
 import pytest
+from made_clock import clock_of
 from recording.conftest import ABOUT, JOURNAL, SCENE, START, TICKING, Ticks, scene_text
 
 from rigid_body_sim.recording import packets, resume
@@ -148,20 +148,8 @@ def test_missing_messages_are_asked_for_and_order_is_kept(tmp_path):
     assert recorded(tmp_path / 'again')[0] == [1, 2, 3]
 
 
-def clock_of(monkeypatch):
-    """Return [now] of a clock that goes on while the process sleeps, and how often it did."""
-    clock, slept = [100.0], []
-
-    def sleep(seconds):
-        slept.append(seconds)
-        clock[0] += seconds
-    monkeypatch.setattr(module, 'time', types.SimpleNamespace(
-        monotonic=lambda: clock[0], sleep=sleep))
-    return clock, slept
-
-
 def test_missing_messages_are_asked_for_again_after_a_while(tmp_path, monkeypatch):
-    clock, _ = clock_of(monkeypatch)
+    clock, _ = clock_of(monkeypatch, module)
     process = RecorderProcess(-1, lambda line: True)
 
     def asked(*sent):
@@ -182,7 +170,7 @@ def test_missing_messages_are_asked_for_again_after_a_while(tmp_path, monkeypatc
 def test_what_came_is_in_the_file_after_a_tenth_of_a_second(
         tmp_path, monkeypatch, full, least, most):
     """In two seconds without a packet; a disk that refuses is tried twice a second."""
-    clock, slept = clock_of(monkeypatch)
+    clock, slept = clock_of(monkeypatch, module)
     process = RecorderProcess(-1, lambda line: True)
     process._buffer = setup(tmp_path / 'bag') + message(1)
     process._take_packets()
