@@ -47,17 +47,15 @@ def runnable(scene):
         return [GENERAL.NAME, taylor.NAME, gauss16.NAME] if has_phases(scene) else [GENERAL.NAME]
     if scene.constraint.mechanism is Mechanism.TABLE:
         return [name for name, method in METHODS.items() if method.TABLE]
-    effects = [effect for effect in scene.effects
-               if effect.acting is not None or effect.as_impulse is None]
-    frame = scene.frame
-    acting = [one for effect in effects if effect.acting is not None
-              for one in effect.acting(frame, 0.0)]
-    hot = any(one.books == 'heat' or one.of_motion for one in acting)
-    kinked = any(one.modes for one in acting)
-    in_field = frame.path is not None or any(one.in_field for one in acting)
-    shown = {view for view in {method.NEEDS for method in METHODS.values()}
-             if all(getattr(effect, view) is not None for effect in effects)}
-    return [name for name, method in METHODS.items()
-            if method.NEEDS in shown
-            and (method.HEAT or not hot) and (method.FIELD or not in_field)
-            and (method.FAMILY.KINKS or not kinked)]
+    frame, hot, kinked = scene.frame, False, False
+    in_field = frame.path is not None
+    seen = []
+    for effect in scene.effects:
+        acting = effect.acting
+        if acting is not None or effect.as_impulse is None:
+            seen.append(effect)
+        for one in acting(frame, 0.0) if acting is not None else ():
+            hot = hot or one.books == 'heat' or one.of_motion
+            kinked = kinked or bool(one.modes)
+            in_field = in_field or one.in_field
+    return list(METHODS.able(METHODS.views(seen), hot, kinked, in_field))

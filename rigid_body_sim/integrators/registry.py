@@ -17,6 +17,17 @@ class Methods(collections.UserDict):
     with the names that are missing.
     """
 
+    def __init__(self, pages=()):
+        """Add the pages of a mapping of names, in its order."""
+        super().__init__()
+        self._changed()
+        self.update(pages)
+
+    def _changed(self):
+        """Forget what was derived from the pages."""
+        self._needed = {page.NEEDS for page in self.data.values()}
+        self._able = {}    # names by what acts: scenes of a kind ask again and again
+
     def __setitem__(self, name, page):
         """Add a page under its name."""
         where = f'method {name}'
@@ -38,3 +49,32 @@ class Methods(collections.UserDict):
             refuse_without(page, asks[control], where,
                            f'its family needs them for {control!r} (docs/extending.md)')
         super().__setitem__(name, page)
+        self._changed()
+
+    def __delitem__(self, name):
+        """Remove the page of a name."""
+        super().__delitem__(name)
+        self._changed()
+
+    def views(self, effects):
+        """Return the views that some method needs and all of these effects have, a frozenset."""
+        return frozenset(view for view in self._needed
+                         if all(getattr(effect, view) is not None for effect in effects))
+
+    def able(self, views, hot, kinked, in_field):
+        """Return the names of the methods that can follow what acts, a tuple.
+
+        Parameters
+        ----------
+        views : frozenset of str
+            Those that all effects have.
+        hot, kinked, in_field : bool
+            Whether anything makes heat, has kinks, depends on time or place.
+        """
+        key = views, hot, kinked, in_field
+        if key not in self._able:
+            self._able[key] = tuple(
+                name for name, page in self.items()
+                if page.NEEDS in views and (page.HEAT or not hot)
+                and (page.FAMILY.KINKS or not kinked) and (page.FIELD or not in_field))
+        return self._able[key]

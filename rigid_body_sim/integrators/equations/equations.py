@@ -138,8 +138,11 @@ class Equations:
             sources['path'] = path_source(path, count)
         self.kernels = specialise(self.kind, **sources)
         self.write = f'{self.kernels.__name__}:write'
-        self._fixed, self._held = self._constants(), {}
-        self.fixed_count = len(self._fixed)
+        self._equation, self._held = self._equation_parameters(), {}
+        self._fixed = (
+            hinged.PARAMETERS.array(hinged.HingedParameters(self._equation, hinged.NO_START))
+            if self.on_hinge else euler.EQUATION.array(self._equation))
+        self.fixed_count = fixed
 
     def _lost_force(self):
         """Return the BadInput of an effect whose force a bearing would balance unnoticed."""
@@ -166,21 +169,18 @@ class Equations:
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self.frame, time)]
 
-    def _constants(self):
-        """Return the fixed parameters, without those that a start decides."""
-        frame, hinge = self.frame, self.on_hinge
-        moments = (0.0, 0.0, 0.0) if hinge else frame.moments
+    def _equation_parameters(self):
+        """Return the EquationParameters, without the numbers that a start decides."""
+        frame = self.frame
+        moments = (0.0, 0.0, 0.0) if self.on_hinge else frame.moments
         inverse = [1.0 / moment if moment > 0.0 else 0.0 for moment in moments]
-        if hinge:
+        if self.on_hinge:
             inverse[0] = 1.0 / self._body.hinge_moment
         share = [difference / moment if moment > 0.0 else 0.0 for difference, moment in zip(
             frame.differences, moments, strict=True)]
-        fixed = np.zeros(hinged.PARAMETERS.size if hinge else euler.FIXED)
-        euler.EQUATION.store(fixed, euler.EquationParameters(
-            scene=self._body, euler=share, inverse=inverse,
-            point=frame.from_body(frame.point), start=euler.NO_START,
-            moves=float(frame.pushed)))
-        return fixed
+        return euler.EquationParameters(
+            scene=self._body, euler=tuple(share), inverse=tuple(inverse),
+            point=frame.from_body(frame.point), start=euler.NO_START, moves=float(frame.pushed))
 
     def held(self, time):
         """Return the parameters that hold just after a time, as an array of the caller's own.
@@ -189,7 +189,7 @@ class Equations:
         """
         k = bisect.bisect_right(self.breakpoints, time)
         if k not in self._held:
-            self._held[k] = self.parameters(self._fixed, time)
+            self._held[k] = self.parameters(time)
         return self._held[k].copy()
 
     def continued(self, p, time):
@@ -204,13 +204,14 @@ class Equations:
         self.kernels.start(p, vector, y, 0)
         return p, y
 
-    def parameters(self, fixed, time):
+    def parameters(self, time):
         """Return the parameters that hold just after a time.
 
         The fixed ones, then the values of all that acts, then those of a pivot's path.
         """
         acting = [value for one in self._acting(time) for value in one.values]
-        return np.concatenate((fixed, acting, self.frame.path.values if self.frame.path else ()))
+        path = self.frame.path.values if self.frame.path else ()
+        return np.concatenate((self._fixed, acting, path))
 
 
 def refuse_no_moment(scene, body):

@@ -72,11 +72,11 @@ class Expanded(Equations):
     @property
     def _first(self):
         """The place of the plan's values in the parameters."""
-        return super().parameters(self._fixed, -np.inf).size
+        return super().parameters(-np.inf).size
 
-    def parameters(self, fixed, time):
+    def parameters(self, time):
         """Return the parameters that hold just after a time, those of the plan after the rest."""
-        before = super().parameters(fixed, time)
+        before = super().parameters(time)
         changing = {f'parameter_{name}': value
                     for name, value in self._trees.numbers(time).items()}
         return np.array([*before, *(self._values | {

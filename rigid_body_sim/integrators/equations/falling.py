@@ -39,6 +39,7 @@ class FallingParameters(NamedTuple):
     fall: Fall
 
 
+NONE = Fall((0.0, 0.0, 0.0), 0.0)
 FALLING = layout(FallingParameters)
 load_fall = FALLING.part('fall').load
 TERMS = tuple(1.0 / math.factorial(k) for k in range(19, 1, -1))

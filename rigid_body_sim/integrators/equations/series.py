@@ -5,6 +5,7 @@ Torques constant in the body or in the world, the weight on an arm, and drag;
 marching/taylor_series.py has the recurrences.
 """
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -75,10 +76,26 @@ def has_phases(scene):
             and laws.rolling == laws.patch == 0.0)
 
 
+@kept
+def _pulls(scene):
+    """Return the Pulls of the effects of a scene that have series.
+
+    Which parts they have does not depend on the time; their numbers are those of none.
+    """
+    return [effect.series(scene.frame, -np.inf) for effect in scene.effects
+            if effect.acting is not None and effect.series is not None]
+
+
 def has_formulas(scene):
     """Return whether any effect has formulas in its view `series`."""
-    return any(effect.series(scene.frame, -np.inf).formulas for effect in scene.effects
-               if effect.acting is not None and effect.series is not None)
+    return any(pull.formulas for pull in _pulls(scene))
+
+
+@functools.cache
+def _kernels():
+    """Return turning.py without sums of what acts: nothing asks for rates."""
+    return specialise(
+        turning, **dict.fromkeys(('omega_rate', 'axes_rate'), '# not asked for\n'))
 
 
 class Series(Equations):
@@ -101,7 +118,7 @@ class Series(Equations):
         )
         if not all(actor.series is not None for actor in self._actors):
             raise refusal(scene)
-        pulls = [actor.series(self.frame, -np.inf) for actor in self._actors]
+        pulls = _pulls(scene)
         # a body on a hinge turns about the third axis of its frame here, by the same equations
         self.kind, self.on_hinge = turning, False
         forced = any(pull.force is not None for pull in pulls)
@@ -109,33 +126,25 @@ class Series(Equations):
         self.falls = self.frame.moves and (forced or any(pull.slowing for pull in pulls))
         self.coupled = any(pull.couple is not None for pull in pulls)
         self.dragged = any(pull.drag is not None for pull in pulls)
-        # the sums of what acts stay unbound: nothing asks for rates
-        self.kernels = specialise(
-            turning, **dict.fromkeys(('omega_rate', 'axes_rate'), '# not asked for\n')
-        )
+        self.kernels = _kernels()
         self.write = f'{(falling if self.falls else self.kernels).__name__}:write'
-        self._fixed, self._held = self._constants(), {}
-        self.parameter_count, self.fixed_count = COUNT, len(self._fixed)
+        self._equation, self._held = self._equation_parameters(), {}
+        self.parameter_count, self.fixed_count = COUNT, euler.FIXED
 
-    def parameters(self, fixed, time):
+    def parameters(self, time):
         """Return the parameters that hold just after a time."""
-        p = np.zeros(COUNT)
-        p[:len(fixed)] = fixed
-        inverse, (rx, ry, rz) = euler.load_inverse(p), self.frame.arm
-        ix, iy, iz = inverse
         total = total_of(actor.series(self.frame, time) for actor in self._actors)
+        fall, M = falling.NONE, self.frame.mass
         if self.falls:
             x, y, z = total.force
-            M = self.frame.mass
             fall = falling.Fall((x / M, y / M, z / M), total.slowing / M)
-            falling.FALLING.part('fall').store(p, fall)
-        for name, value in (
-                ('constant', product(inverse, total.torque)), ('force', total.force),
-                ('couple', total.couple),
-                ('pull', (ix * -rz, ix * ry, iy * -rx, iy * rz, iz * -ry, iz * rx)),
-                ('drag', tuple(map(scaled, inverse, total.drag)))):
-            SERIES.part(name).store(p, value)
-        return p
+        inverse, (rx, ry, rz) = self._equation.inverse, self.frame.arm
+        ix, iy, iz = inverse
+        return SERIES.array(SeriesParameters(
+            falling=FallingParameters(self._equation, fall),
+            constant=product(inverse, total.torque), force=total.force,
+            pull=(ix * -rz, ix * ry, iy * -rx, iy * rz, iz * -ry, iz * rx),
+            couple=total.couple, drag=tuple(map(scaled, inverse, total.drag))))
 
 
 def _frame(scene, body):

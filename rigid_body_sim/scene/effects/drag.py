@@ -10,7 +10,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import rotate, rotate_back
-from rigid_body_sim.numerics.vectors import apply, cross, minus, plus, scaled, transposed
+from rigid_body_sim.numerics.vectors import apply, cross, plus, scaled, transposed
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Formulas, Pull
@@ -21,7 +21,6 @@ from rigid_body_sim.scene.schema import MATRIX, described, mapping_of
 
 COEFFICIENT = {**MATRIX, 'type': ['number', 'array'], 'minimum': 0}
 KEYS = 'linear', 'angular', 'quadratic', 'angular_quadratic'
-UNIT = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SHAPED = 'a number or a symmetric matrix in body axes'
 SYMMETRY = 1e-12    # asymmetry, relative to the size of a matrix, that counts as rounding
 
@@ -85,12 +84,12 @@ class Drag(Effect):
         """Return the couple, and the force as a moment about a bearing or as it slows a flight."""
         if frame.path is not None:
             return self._shaped.series(frame, time)
-        x, y, z = frame.arm
+        (x, y, z), a, c = frame.arm, self.angular, self.linear
         # the matrices of the kernels `couple` and `moment`, without the difference r^2 - z^2
-        of_arm = ((y * y + z * z, -x * y, -x * z), (-x * y, z * z + x * x, -y * z),
-                  (-x * z, -y * z, x * x + y * y))
-        drag = tuple(minus(scaled(-self.angular, unit), scaled(self.linear, row))
-                     for unit, row in zip(UNIT, of_arm, strict=True))
+        xy, yz, zx = c * (x * y), c * (y * z), c * (x * z)
+        drag = ((-a - c * (y * y + z * z), xy, zx),
+                (xy, -a - c * (z * z + x * x), yz),
+                (zx, yz, -a - c * (x * x + y * y)))
         return Pull(drag=drag if any(map(any, drag)) else None,
                     slowing=self.linear if frame.moves else 0.0)
 
