@@ -27,7 +27,7 @@ from rigid_body_sim.study.precision import (
     table,
     work_precision,
 )
-from rigid_body_sim.study.precision.peers import given, plane
+from rigid_body_sim.study.precision.peers import plane
 
 OFF = 1e-5
 
@@ -256,6 +256,8 @@ def test_engines_are_not_asked_what_they_do_otherwise(surface, table, more, why)
 
 @pytest.mark.without_numba
 def test_peers_without_contact_refuse_a_body_with_a_surface():
+    pytest.importorskip('numba', reason='peers are given compiled equations')
+    from rigid_body_sim.study.precision.peers import given
     with pytest.raises(runner.RefusedError, match='contact'):
         given.of(suite.problem('tippe_top'))
 
