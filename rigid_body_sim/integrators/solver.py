@@ -241,8 +241,10 @@ class Stepped:
         if batch is None:
             on_all_cores(one_by_one, len(starts))
             return
-        begins, (x2, y2, z2) = starts[:, TIME], np.square(starts[:, ANGULAR_VELOCITY].T)
-        rates = np.sqrt(x2 + y2 + z2)
+        begins = starts[:, TIME]
+        with np.errstate(over='ignore'):    # from such a rate no later time is reached
+            x2, y2, z2 = np.square(starts[:, ANGULAR_VELOCITY].T)
+            rates = np.sqrt(x2 + y2 + z2)
         first, last = float(times.min()), float(times.max())
         for body in np.flatnonzero((first < begins) | (last > _latest(begins, rates))):
             with _naming(body):
