@@ -2,13 +2,11 @@
 """Bodies that are symmetric but for what is too little to matter: they are taken as symmetric.
 
 A closed form that needs two or three equal moments is offered the scene with moments made equal
-that lie within NEARLY of each other: both of a pair become their mean I. Their difference d has
-what rounding lost in the parallel-axis theorem, so that it need not be 0 where both are the same
-double. What is left out of Euler's equations, for I_i = I + d/2 and I_j = I - d/2 and the third
-axis k, in cyclic order, is
+that lie within NEARLY of each other: all of them become one moment, I + e -> I. Their differences
+have what rounding lost in the parallel-axis theorem, so that an e need not be 0 where moments are
+the same double. What is left out of Euler's equations, for axes i, j, k in cyclic order, is
 
-    omega_i' by -d/(2 I) (omega_i' + omega_j omega_k),
-    omega_j' by  d/(2 I) (omega_j' - omega_k omega_i),      omega_k' by d/I_k omega_i omega_j.
+    omega_i' by ((e_j - e_k) omega_j omega_k - e_i omega_i') / I_i.
 
 The centre of mass of a held body may lie off the axis by NEARLY of its distance: its part d across
 the axis is left out, and with it the torque d x R^T F of the force on the body.
@@ -166,17 +164,24 @@ def _error(solver, scene, equal, off, horizon, each):
 
 def _kicks(inertia, equal, rises, sums):
     """Return the kicks about the principal axes, shape (3, STRETCHES), rad/s."""
-    kicks = np.zeros((3, STRETCHES))
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        d, I = inertia.differences[k], equal[i]
-        if equal[i] != equal[j] or I == 0.0:
-            continue
-        kicks[i] -= 0.5 * d / I * (rises[i] + sums[i])
-        kicks[j] += 0.5 * d / I * (rises[j] - sums[j])
-        if inertia.moments[k] > 0.0:
-            kicks[k] += d / inertia.moments[k] * sums[k]
+    kicks, e = np.zeros((3, STRETCHES)), _left_out(inertia, equal)
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        if equal[i] > 0.0:
+            kicks[i] = ((e[j] - e[k]) * sums[i] - e[i] * rises[i]) / equal[i]
     return kicks
+
+
+def _left_out(inertia, equal):
+    """Return the e of each moment, kg m^2: what it has beyond the one that is taken for it."""
+    found = []
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        alike = [part for part in (i, j, k) if equal[part] == equal[i]]
+        beyond = {j: inertia.differences[k], k: -inertia.differences[j]}    # I_i - I_j, I_i - I_k
+        mean = sum(inertia.moments[part] - equal[i] for part in alike) / len(alike)
+        found.append(mean + sum(beyond[part] for part in alike[1:]) / len(alike))
+    return found
 
 
 def _between(p, q):
