@@ -11,7 +11,6 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching import switched
 from rigid_body_sim.integrators.marching.points import FIXED, ORIGIN, SCALES, STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.switched import (
-    FIRST,
     KEPT,
     STALLS,
     Resting,
@@ -79,13 +78,17 @@ def test_what_rests_is_where_it_was_at_any_time():
 
 
 class Course:
-    """A march by steps of 1 s, on which x, at place 8, and omega_z, at 7, are given in time."""
+    """A march by steps of 1 s, on which x, at place 8, and omega_z, at 7, are given in time.
 
-    def __init__(self, x, omega=lambda time: 1.0):
-        self.x, self.omega = x, omega
+    At place 9 is the number of the march.
+    """
+
+    def __init__(self, x, omega=lambda time: 1.0, number=0):
+        self.x, self.omega, self.number = x, omega, number
 
     def state(self, time, out):
-        out[:], out[0], out[7], out[8], out[13] = 0.0, time, self.omega(time), self.x(time), 5.0
+        out[:], out[0], out[7], out[8] = 0.0, time, self.omega(time), self.x(time)
+        out[9], out[13] = self.number, 5.0
 
     def states(self, times, out):
         for time, row in zip(times, out, strict=True):
@@ -121,14 +124,17 @@ class Made(Switched):
         return self._pull_of(vector)
 
     def _course(self, place):
-        return Resting(self._stretches[place].vector) if self._stretches[place].rests \
-            else self._made
+        if self._stretches[place].rests:
+            return Resting(self._stretches[place].vector)
+        return Course(self._made.x, self._made.omega, place)
 
 
 def test_a_new_march_begins_at_each_kink_and_at_each_breakpoint():
     """At the zeros of x - 0.3, x - 2.6 and 3 - x with x = t; a kink is the first double beyond."""
-    of = Made(Course(lambda time: time), [
-        lambda v: v[8] - 0.3, lambda v: v[8] - 2.6, lambda v: 3.0 - v[8]], breakpoints=(2.0,))
+    def made():
+        return Made(Course(lambda time: time), [lambda v: v[8] - 0.3, lambda v: v[8] - 2.6,
+                                                lambda v: 3.0 - v[8]], breakpoints=(2.0,))
+    of = made()
     begins = [math.nextafter(0.3, 1.0), 2.0, math.nextafter(2.6, 3.0), math.nextafter(3.0, 4.0)]
     assert of.kinks(5.0) == begins
     assert of.kinks(2.0) == begins[:1]
@@ -142,13 +148,15 @@ def test_a_new_march_begins_at_each_kink_and_at_each_breakpoint():
         # the march goes on with its step and scales, of omega at least (1/horizon)^2
         assert one.head.tolist() == [begin, 1.0 / 10.0 * (1.0 / 10.0), 4.0, 5.0]
     times, out = np.array([2.7, 0.1, 2.0, 0.3]), np.empty((4, STATE_SIZE))
+    of = made()
     of.states(times, out)
     assert out[:, 0].tolist() == out[:, 8].tolist() == times.tolist()
+    assert out[:, 9].tolist() == [3, 0, 2, 0]
+    of = made()
+    of.state(4.0, out[0])
+    assert (out[0, 8], out[0, 9]) == (4.0, 4)
     assert [of._place(time) for time in (0.0, 0.3, begins[0], 1.9, 2.0, 9.0)] == [
         0, 0, 1, 1, 2, 4]
-    out = np.empty(STATE_SIZE)
-    of.state(2.5, out)
-    assert out[8] == 2.5
 
 
 @pytest.mark.parametrize(('pulls', 'grip', 'stretches'), [
@@ -182,7 +190,7 @@ def test_a_body_at_rest_breaks_loose_where_the_torque_outgrows_friction(sign):
     rest, moves = of._stretches
     assert (rest.rests, rest.modes, rest.head) == (True, (0.0, 1.0), None)
     assert (moves.rests, moves.modes) == (False, (sign, 1.0))
-    assert moves.head.tolist() == [FIRST, 0.1 * 0.1, *[0.0] * (VALUES - SCALES - 1)]
+    assert moves.head.tolist() == [2.0 ** -7, 0.1 * 0.1, *[0.0] * (VALUES - SCALES - 1)]
 
 
 @pytest.mark.parametrize(('drives', 'mode'), [
@@ -276,3 +284,20 @@ def test_few_marches_stay_in_memory(monkeypatch):
     assert [*of._courses] == [*range(KEPT)]
     Switched._course(of, KEPT)
     assert [*of._courses] == [*range(1, KEPT + 1)]
+
+
+@pytest.mark.parametrize(('step', 'head', 'given'), [
+    (None, 'head', ['head']), (None, None, []), (0.1, 'head', [])])
+def test_a_march_between_kinks_is_given_its_sides_and_begins_as_the_one_before(step, head, given):
+    """It has the sides in its parameters; fixed steps take no step from the march before."""
+    filled, heads, prototype = [], [], np.arange(5.0)
+    bound = types.SimpleNamespace(
+        equations=types.SimpleNamespace(breakpoints=(), modes=[1, 3]), piece_size=7,
+        prototype=lambda time: prototype, set_head=lambda piece, head: heads.append(head),
+        track=types.SimpleNamespace(
+            first_piece=lambda *what: filled.append([one.tolist() for one in what[:2]])))
+    start = switched.Start(None, None, None, step, 2.0, np.ones(3))
+    Within(start, bound, (-1.0, 0.0), head)
+    assert filled == [[[0.0, -1.0, 2.0, 0.0, 4.0], [1.0, 1.0, 1.0]]]
+    assert prototype.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]    # others share it
+    assert heads == given
