@@ -77,6 +77,7 @@ class Body:
         self.paused += 1
 
     def rate(self, p, y, row):
+        assert y.shape == self.y.shape
         row[:] = 0.0
         row[ROLLS], row[NORMAL], row[PACE] = self.left(tuple(p[WAY])), LOAD, 0.5
         row[PLACE], row[Q] = 0.5 * SPIN, (0.0, 0.0, 0.0, 9.0)
@@ -131,8 +132,9 @@ def test_a_disk_that_lies_is_held_where_it_does_not_tip(along, way, monkeypatch)
     """Its lowest point runs round at any speed; what counts is the tipping beside rounding."""
     body = Body(monkeypatch, 'disk', tips=(9.0, along * ROUNDING * SPEED / LENGTH), flat=True)
     assert body.begin(False) == way
-    other = Body(monkeypatch, 'torus', tips=(9.0, 1.0), flat=True)
-    assert other.begin(False) == AHEAD
+    for kind, flat in (('torus', True), ('disk', False)):
+        other = Body(monkeypatch, kind, tips=(9.0, 0.0), flat=flat, left=lambda way: -1.0)
+        assert other.begin(False) == AHEAD
 
 
 @pytest.mark.parametrize(('released', 'left', 'way', 'slack'), [
@@ -146,6 +148,7 @@ def test_a_tie_of_force_and_friction_is_held_unless_friction_has_just_let_go(
     body = Body(monkeypatch, 'disk', left=lambda way: left * tie)
     assert body.begin(True, False, released) == way
     assert body.p[SLACK] == slack * TIE
+    assert released or body.begin(True) == way    # it is not, if nothing is said
     back = Body(monkeypatch, 'disk', speed=3.0, left=lambda way: -1.0, force=(-0.6, 0.8))
     assert back.begin(True) == BACK
 
@@ -191,6 +194,7 @@ def test_a_torus_at_rest_tips_about_its_tube_unless_it_has_just_ended_a_tipping(
         assert body.begin(True, tipped) == way
         assert body.p[RIM] == (0.0 if tipped else ERROR)
         assert len(body.asked) == 2 * tipped
+    assert body.begin(True) == BACK
 
 
 def test_a_torus_that_no_step_follows_along_its_ring_tips_on_with_the_error_that_it_may_have(
@@ -211,6 +215,10 @@ def test_a_torus_that_no_step_follows_along_its_ring_tips_on_with_the_error_that
     body = Body(monkeypatch, 'torus', tips=(-2.0, 2.1 * TIPS * 2.0 + 8.1 * ROUNDING))
     body.p[RIM], body.p[SWIFT] = 0.0, SPEED
     assert not body.friction.goes_on_tipping(body.p, body.y)
+    body = Body(monkeypatch, 'torus', tips=(-2.0, 0.0), left=lambda way: -1.0)
+    body.p[RIM], body.friction._error = 0.0, TIPS
+    assert not body.friction.goes_on_tipping(body.p, body.y)    # nothing holds it along the ring
+    assert body.friction.allowed == (0.0, math.inf)    # it had that error anyway
 
 
 @pytest.mark.parametrize(('kind', 'mode', 'dry', 'way', 'share', 'ended'), [

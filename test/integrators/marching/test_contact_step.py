@@ -9,6 +9,7 @@ from near import near
 from scipy.integrate import DOP853
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.contact_views import (
     FLIGHT,
     ROLLING,
@@ -127,3 +128,32 @@ def test_a_step_of_what_does_not_end_is_refused(mode):
     p[MODE], y[3] = mode, 1.0
     w[0, OMEGA] = 2.0 * LARGE / contact_step.A[1, 0]
     assert contact_step.step_from(p, w, y, np.zeros(SIZE), 1.0) == math.inf
+
+
+LINEAR = specialise(contact_step, rate=f'def rate(p, y, row):\n'
+                                       f'    row[:{SIZE}] = p[{CONTACT.size}] @ y[:{SIZE}]\n')
+
+
+def test_a_step_is_that_of_dop853():
+    """On linear equations, beside the table of scipy; the ledger depends on what is coupled."""
+    draw, h = np.random.default_rng(2), 0.4
+    matrix, y, lost = draw.normal(size=(SIZE, SIZE)), draw.normal(size=SIZE), np.zeros(SIZE)
+    matrix[:, COUPLED:] = 0.0
+    y[:4] /= np.linalg.norm(y[:4])
+    p, w, K = [0.0] * CONTACT.size + [matrix], room(), np.zeros((STAGES, SIZE))
+    p[MODE] = ROLLING
+    for i in range(STAGES):
+        K[i] = matrix @ (y + h * DOP853.A[i, :i] @ K[:i])
+    w[0, :SIZE], lost[SIZE - 1] = K[0], 0.25
+    assert LINEAR.step_from(p, w, y, lost, h) == 0.0
+    expected = y + h * DOP853.B @ K + lost
+    expected[:4] /= np.linalg.norm(expected[:4])
+    # measured: 3e-14 of the largest, since the terms of stages nearly cancel
+    assert w[FRESH, :SIZE] == pytest.approx(expected, abs=3e-13 * np.abs(expected).max())
+    assert w[1:STAGES, :SIZE] == pytest.approx(K[1:], abs=3e-13 * np.abs(K).max())
+    # what is too large to go on from, at its end and in a stage
+    for n, most in ((SIZE - 1, 1.1 * LARGE), (0, math.nan)):
+        y[n] = most
+        with np.errstate(invalid='ignore'):
+            assert LINEAR.step_from(p, w, y, lost, 1e-9) == math.inf
+        y[n] = 0.5
