@@ -693,3 +693,74 @@ def test_the_way_in_which_a_ring_topples_is_that_of_its_turn(monkeypatch):
     assert math.atan2(ways[-1][1], ways[-1][0]) == pytest.approx(0.5, abs=1e-13)
     assert 13 <= len(ways) <= 16
     assert body.p[[DRY, RIM, ONSET]].tolist() == [1.0] * 3
+
+
+# -- the start -----------------------------------------------------------------------------------
+
+PLACE, HEIGHT, INCLINES = (30.0, -40.0), -2.0, 0.1    # 50 m along a plane that is inclined
+
+
+@pytest.mark.parametrize(('gap', 'mu', 'velocity', 'clamped', 'done'), [
+    (1.01, 0.5, (0.0, 0.0, 0.0), False, [('_open', FLIGHT)]),
+    (1.01, 0.5, (0.0, 0.0, -9.0), True, [('_open', FLIGHT)]),
+    (0.99, 0.5, (0.0, 0.0, 0.0), False, [('tip',), ('_land', STOP)]),
+    (-5.0, 0.5, (*AWAY, 0.0), False, [('tip',), ('_land', AWAY)]),
+    (0.0, 0.5, (0.006, 0.007, 0.009), False, [('tip',), ('_land', STOP)]),
+    (0.0, 0.5, (0.006, 0.009, -0.009), False, [('tip',), ('_land', (0.006, 0.009))]),
+    (0.0, 0.5, (0.006, 0.009, 0.011), False, [('tip',), ('_open', FLIGHT)]),
+    (0.0, 0.5, (0.006, 0.009, -0.011), False, [('tip',), ('_impact',)]),
+    (0.0, 0.5, (0.006, 0.007, -0.011), True, [('tip',), ('_land', (0.006, 0.007))]),
+    (0.0, 2.0 * IDEAL, (0.006, 0.009, 0.0), False, [('tip',), ('_impact',)]),
+    (0.0, 2.0 * IDEAL, (0.006, 0.007, 0.0), False, [('tip',), ('_land', STOP)]),
+    (0.0, IDEAL, (0.006, 0.009, 0.0), False, [('tip',), ('_land', (0.006, 0.009))])])
+def test_a_course_begins_in_flight_with_an_impact_or_on_the_plane(
+        gap, mu, velocity, clamped, done, monkeypatch):
+    """The gap is told in units of its rounding, 2^-47 of 1/2 m + 2 m + 0.1 of 50 m.
+
+    The rounding of velocities is 0.01 m/s.
+    """
+    seen, taken = [], []
+
+    def read(p, vector, y):
+        y[:] = 0.0
+        y[3], y[GAP] = 1.0, gap * ROUNDING * (LENGTH + 2.0 + 0.1 * 50.0)
+        return *PLACE, HEIGHT
+
+    def tip(p, y, slow):
+        assert slow == 0.01 / LENGTH
+        seen.append(('tip',))
+    scales = types.SimpleNamespace(rounding=lambda y: 0.01, length=LENGTH)
+    for name, does in (
+            ('read', read), ('tip', tip), ('length_of', lambda p, rates, y, row: LENGTH),
+            ('Scales', lambda *of: taken.append(of) or scales),
+            ('DryRolling', lambda bound, of, error: taken.append((of, error))),
+            ('velocity_of_lowest', lambda p, y: velocity),
+            ('is_clamped', lambda p, y, v, limit: clamped and (v, limit) == (velocity, 0.01)),
+            ('Work', lambda name, most, **how: taken.append((name, most, how)))):
+        monkeypatch.setattr(contact_course, name, does)
+
+    class Made(PlaneCourse):
+        def _open(self, mode, p, y):
+            seen.append(('_open', mode))
+            assert p[ORIGIN].tolist() == [*PLACE] and p[STARTED] == BEGIN
+
+        def _land(self, p, y, slip):
+            seen.append(('_land', slip))
+            assert y[GAP] == 0.0
+
+        def _impact(self, p, y):
+            seen.append(('_impact',))
+            assert y[GAP] == 0.0
+    vector, p = np.zeros(14), np.zeros(CONTACT.size)
+    vector[0], p[MU], p[contact_course.INCLINED] = BEGIN, mu, INCLINES
+    stepped = types.SimpleNamespace(
+        vector=vector, accuracy=2e-9, horizon=4.0, most=7,
+        method=types.SimpleNamespace(NAME='made'))
+    bound = types.SimpleNamespace(
+        work_shape=(2, ROW.size), scene=types.SimpleNamespace(name='up'), heaviness=HEAVY,
+        parameters=lambda time: p.copy(), rates=None)
+    made = Made(stepped, bound)
+    assert seen == done
+    assert made._tolerance == 5e-10
+    assert taken == [('made on up', 7, {'comes_to_rest': True, 'origin': BEGIN}),
+                     (LENGTH, HEAVY, 2e-9), (scales, 2e-9)]
