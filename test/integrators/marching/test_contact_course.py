@@ -727,21 +727,22 @@ def test_a_course_begins_in_flight_with_an_impact_or_on_the_plane(
         return *PLACE, HEIGHT
 
     def tip(p, y, slow):
-        assert slow == 0.01 / LENGTH
+        assert (len(y), slow) == (SIZE, 0.01 / LENGTH)
         seen.append(('tip',))
-    scales = types.SimpleNamespace(rounding=lambda y: 0.01, length=LENGTH)
+    scales = types.SimpleNamespace(rounding=lambda y: 0.01 * (len(y) == SIZE), length=LENGTH)
     for name, does in (
             ('read', read), ('tip', tip), ('length_of', lambda p, rates, y, row: LENGTH),
             ('Scales', lambda *of: taken.append(of) or scales),
             ('DryRolling', lambda bound, of, error: taken.append((of, error))),
             ('velocity_of_lowest', lambda p, y: velocity),
-            ('is_clamped', lambda p, y, v, limit: clamped and (v, limit) == (velocity, 0.01)),
+            ('is_clamped', lambda p, y, *of: clamped and (len(y), *of) == (SIZE, velocity, 0.01)),
             ('Work', lambda name, most, **how: taken.append((name, most, how)))):
         monkeypatch.setattr(contact_course, name, does)
 
     class Made(PlaneCourse):
         def _open(self, mode, p, y):
             seen.append(('_open', mode))
+            assert len(y) == SIZE
             assert p[ORIGIN].tolist() == [*PLACE] and p[STARTED] == BEGIN
 
         def _land(self, p, y, slip):
