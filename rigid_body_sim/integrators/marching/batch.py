@@ -75,7 +75,7 @@ def rows_for(p, hinge):
         across, aside, _ = apply(rows, force)
         # the second direction is (-y, x, 0) in the body where the first one is (x, y, 0)
         pull = np.zeros((3, 3))
-        pull[2, :2] = across * u5 + aside * u6, across * u6 - aside * u5
+        pull[2] = across * u5 + aside * u6, across * u6 - aside * u5, 0.0
         constant[2] += inverse[2] * apply(rows, couple)[2]
         second = (0.0, 0.0, 0.0)
     else:
