@@ -209,6 +209,7 @@ def test_a_body_that_turns_does_not_rest_by_standing_still(monkeypatch):
     (0.5, ROLLING, STOP, 0.01, {}, [('_give_way',)]),
     (0.5, ROLLING, STOP, 0.01, {'stays': True}, [('halt',), ('_open', RESTING)]),
     (0.5, SLIDING, AWAY, 0.0, {}, [('_rest', 102.5)]),
+    (0.5, SLIDING, (0.3, 0.0), 0.0, {}, [('_rest', 102.5)]),
     (0.5, SLIDING, AWAY, 0.0, {'is_disk': True, 'stays': True}, [('_give_way',)]),
     (0.5, ROLLING, AWAY, 0.0, {'is_disk': True}, [('_rest', 102.5)]),
     (0.0, GLIDING, STOP, 0.03, {'stays': True}, [('_give_way',)]),
@@ -533,7 +534,7 @@ def test_a_body_at_rest_is_held_or_not_by_what_acts_from_now_on(monkeypatch):
 
 # -- how a phase begins --------------------------------------------------------------------------
 
-def opened(monkeypatch, mode, *how, time=2.5, tolerance=1e-9, **what):
+def opened(monkeypatch, mode, *how, time=2.5, tolerance=1e-9, wide=WIDEST, **what):
     """Return a body, and the phases that it begins: (parameters, unknowns, tolerance)."""
     body, phases = Body(monkeypatch, '_open', **what), []
 
@@ -543,7 +544,7 @@ def opened(monkeypatch, mode, *how, time=2.5, tolerance=1e-9, **what):
             self.p, self.y, self.tolerance, self.begin = p, y, tolerance, float(y[TIME])
             phases.append(self)
     monkeypatch.setattr(contact_course, 'Phase', Made)
-    body.y[TIME], body._tolerance = time, tolerance
+    body.y[TIME], body._tolerance, body._wide = time, tolerance, wide
     body._open(mode, body.p, body.y, *how)
     return body, phases
 
@@ -575,12 +576,15 @@ def test_a_phase_is_told_how_the_one_before_has_ended(monkeypatch):
 
 def test_the_rounding_of_forces_that_cancel_and_of_a_spin_is_not_resolved(monkeypatch):
     for tolerance in (2.0 ** -51, 2.0 ** -48):
-        body, (phase,) = opened(monkeypatch, PIVOTING, tolerance=tolerance, spin=-1e-3)
-        assert phase.tolerance == max(tolerance, CANCELS * HEAVY / SPEED)
-        noise = 1e-3 * SLIP_ROUNDS / (phase.tolerance * LENGTH)
-        assert phase.p[WIDE] == near(min(WIDEST, noise) * LENGTH / SPEED, rel=1e-14)
-        assert phase.p[SIDE] == -1.0
-    assert body._wide == WIDEST
+        for spin, wide, most in ((-1e-6, 1e-6, WIDEST), (-1e-3, 1e-6, 0.0), (0.0, 1e-4, 1e-4)):
+            body, (phase,) = opened(
+                monkeypatch, PIVOTING, tolerance=tolerance, wide=wide, spin=spin)
+            assert phase.tolerance == max(tolerance, CANCELS * HEAVY / SPEED)
+            noise = -spin * SLIP_ROUNDS / (phase.tolerance * LENGTH)
+            expected = noise if most == WIDEST else most or WIDEST
+            assert phase.p[WIDE] == near(expected * LENGTH / SPEED, rel=1e-14)
+            assert phase.p[SIDE] == math.copysign(1.0, spin)
+            assert body._wide == wide
 
 
 def test_a_ring_that_lies_flies_level_as_high_as_its_rim(monkeypatch):
@@ -611,6 +615,7 @@ def test_phases_that_follow_each_other_without_end_are_a_fault(monkeypatch):
         else:
             body._open(ROLLING, body.p, body.y)
             assert len(body._phases) == 4
+            assert body._begins == [one.begin for one in body._phases]
 
 
 # -- states and events ---------------------------------------------------------------------------

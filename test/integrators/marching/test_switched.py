@@ -162,13 +162,15 @@ def test_a_new_march_begins_at_each_kink_and_at_each_breakpoint():
 @pytest.mark.parametrize(('pulls', 'grip', 'stretches'), [
     (3.0, 4.0, [(0.0, False, 1.0), (1.5, True, 0.0), (4.0, True, 0.0)]),
     (-3.0, 3.0, [(0.0, False, 1.0), (1.5, True, 0.0), (4.0, True, 0.0)]),
+    (0.3, 0.4, [(0.0, False, 1.0), (1.5, True, 0.0), (4.0, True, 0.0)]),
     (-3.0, 2.9, [(0.0, False, 1.0), (1.5, False, -1.0), (4.0, False, -1.0)])])
 def test_friction_holds_a_body_on_a_hinge_whose_rate_passes_zero(pulls, grip, stretches):
     """The rate is 1.5 - t, until it rests or goes on the other way."""
-    of = Made(Course(lambda time: 0.0, lambda time: 1.5 - time), [lambda v: v[7]],
+    of = Made(Course(lambda time: 0.0, lambda time: 1.5 - time),
+              [lambda v: v[7], lambda v: 1.5 - v[0]],
               lambda v: pulls, breakpoints=(4.0,), grip=grip, gripping=(0,))
     of.kinks(6.0)
-    assert [(pytest.approx(one.begin, abs=3e-16), one.rests, *one.modes)
+    assert [(pytest.approx(one.begin, abs=3e-16), one.rests, one.modes[0])
             for one in of._stretches] == stretches
     vector = of._stretches[1].vector
     assert not vector[5:8].any() and not vector[11:14].any()
@@ -301,3 +303,56 @@ def test_a_march_between_kinks_is_given_its_sides_and_begins_as_the_one_before(s
     assert filled == [[[0.0, -1.0, 2.0, 0.0, 4.0], [1.0, 1.0, 1.0]]]
     assert prototype.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]    # others share it
     assert heads == given
+
+
+@pytest.mark.parametrize('place', [0.25, 1.0, 1.75])
+def test_a_switch_is_looked_at_each_quarter_of_a_step_and_at_its_end(place):
+    """It is below zero within 0.1 s of a look, and above it at the ones before and after."""
+    of = Made(Course(lambda time: time), [lambda v: abs(v[8] - place) - 0.1])
+    assert of.kinks(3.0) == [pytest.approx(place - 0.1, abs=4e-16),
+                             pytest.approx(place + 0.1, abs=4e-16)]
+
+
+@pytest.mark.parametrize(('hinge', 'winds'), [
+    (None, False), (types.SimpleNamespace(winds=True), True),
+    (types.SimpleNamespace(winds=False), False)])
+def test_a_course_with_kinks_begins_with_a_march_of_its_own(hinge, winds, monkeypatch):
+    """It is given the sides of the switches at its start, in the parameters that hold then."""
+    held, given = [], []
+
+    def sides(p, vector, out):
+        given.append(p.tolist())
+        out[:] = 0.5, -0.5
+
+    def equal(time):
+        held.append(time)
+        return np.zeros(4)
+    monkeypatch.setattr(switched, 'specialise', lambda template, switching, COUNT: (
+        types.SimpleNamespace(sides=sides) if (switching, COUNT) == ('source', 'COUNT = 2\n')
+        else None))
+    equations = types.SimpleNamespace(
+        modes=[1, 3], switching_source=lambda: 'source', frame=types.SimpleNamespace(hinge=hinge),
+        breakpoints=(1.0, 2.0, 9.0), grip=0.0, gripping=(), held=equal)
+    start = np.zeros(STATE_SIZE)
+    start[0] = 2.0
+    of = Switched(types.SimpleNamespace(
+        method=None, scene=None, most=None, step=None, horizon=4.0, vector=start),
+        types.SimpleNamespace(equations=equations))
+    assert (of._slowest, of._winds, of._stalls, of._steps) == (0.25, winds, 0, 0)
+    stretch, = of._stretches
+    assert (stretch.begin, stretch.end, stretch.modes) == (2.0, 9.0, (1.0, -1.0))
+    assert stretch.vector is not start and not of.TELLS_EVENTS
+    assert of._sides(start, (7.0, 8.0)) == [0.5, -0.5]
+    assert given == [[0.0] * 4, [0.0, 7.0, 0.0, 8.0]]
+    assert held == [2.0, 2.0]
+
+
+def test_the_torque_that_friction_is_to_bear_is_the_moment_times_the_angular_acceleration():
+    """The parameters hold 1/I."""
+    p = np.zeros(switched.INVERSE + 1)
+    p[switched.INVERSE] = 0.25
+    equations = types.SimpleNamespace(
+        start=lambda vector: (p, vector),
+        kernels=types.SimpleNamespace(rate=lambda p, y: ('angle', 3.0 * y, 'more', 'more')))
+    of = types.SimpleNamespace(_bound=types.SimpleNamespace(equations=equations))
+    assert Switched._pull(of, 2.0) == 24.0
