@@ -106,6 +106,10 @@ def test_the_error_of_a_step_is_that_of_its_two_estimates():
     expected = solver._estimate_error_norm(K, 0.3, 1.0 / weights) * math.sqrt(COUPLED)
     # measured: 2e-16
     assert contact_step.error_of(w, 0.3, scales) == near(expected, rel=1e-14)
+    assert contact_step.error_of(room(), 0.3, scales) == 0.0    # nothing moves
+    w[:STAGES, :COUPLED] *= 1e200    # the squares leave the range of doubles
+    with np.errstate(over='ignore'):
+        assert contact_step.error_of(w, 0.3, scales) == math.inf
 
 
 @pytest.mark.parametrize(('faint', 'told'), [(0.9, False), (1.1, True)])

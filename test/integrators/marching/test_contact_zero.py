@@ -49,8 +49,8 @@ def test_a_zero_is_the_first_double_at_which_the_number_is_below_it(place, power
     found, looks = first_zero(function, h)
     assert function(2.0 + found) < 0.0
     assert found == near(place * h, rel=1e-15) or function(2.0 + math.nextafter(found, 0.0)) >= 0.0
-    # measured: 58 where a look falls on the zero itself, 90 of the ninth power
-    assert len(looks) < 16 + contact_zero.BISECTIONS
+    # measured: 25 of a straight one, 58 if a look falls on its zero, 90 of the ninth power
+    assert len(looks) < (40 if power == 1 and place != 0.5 else 16 + contact_zero.BISECTIONS)
 
 
 @pytest.mark.parametrize('begin', [0.0, 1e-3, -0.1])
@@ -82,6 +82,13 @@ def test_a_dip_between_two_looks_is_searched_through_to_its_first_zero(place, si
     assert last == pytest.approx(place, abs=2e-6)    # golden: 0.125 0.618^24 = 1.2e-6
 
 
+def test_a_dip_is_searched_for_around_the_least_of_the_looks():
+    """Another one before it, that is wider, stays above zero."""
+    found, _ = first_zero(lambda time: min(
+        (time - 2.2) ** 2 + 0.01, (time - 2.8) ** 2 - 1e-4))
+    assert found == near(0.79, rel=1e-12)
+
+
 @pytest.mark.parametrize('until', [0.4, 0.9])
 def test_a_gap_that_is_watched_as_zero_below_zero_fell_before(until):
     """Of a flight: the gap 0.3 - x is below zero from 0.3 on, 0 from where it grows again, 0.31.
@@ -98,13 +105,14 @@ def test_a_gap_that_is_watched_as_zero_below_zero_fell_before(until):
         assert found == pytest.approx(until, abs=4e-16)
 
 
-def test_a_gap_that_is_watched_as_zero_is_searched_before_it_in_a_dip():
-    """Between two looks it falls below zero at 0.51 and is 0 from 0.515 until 0.56."""
+@pytest.mark.parametrize('since', [0.515, 0.511])
+def test_a_gap_that_is_watched_as_zero_is_searched_before_it_in_a_dip(since):
+    """Between two looks it falls below zero at 0.51, soon is 0, and 0.2 from 0.56 on."""
     def gap(time):
         x = time - 2.0
-        if 0.515 < x < 0.56:
+        if since < x < 0.56:
             return 0.0
-        return 0.51 - x if x <= 0.515 else 0.2
+        return 0.51 - x if x <= since else 0.2
     found, _ = first_zero(gap, mode=FLIGHT)
     assert found == pytest.approx(0.51, abs=4e-16)
 

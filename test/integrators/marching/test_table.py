@@ -40,6 +40,8 @@ from rigid_body_sim.integrators.marching.table import (
 )
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
 from rigid_body_sim.motions.sliding_sphere import Parameters
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
 
 pytestmark = pytest.mark.without_numba
 
@@ -48,9 +50,9 @@ NONE, PUSH = (0.0, 0.0, 0.0), (3.0, 4.0, 0.0)    # the latter drives by G = 2.5 
 ORDER, TOLERANCE = 8, 2.0 ** -40
 
 
-def parameters(mode, push=PUSH, mu=0.2):
+def parameters(mode, push=PUSH, mu=0.2, g=10.0):
     """Return the parameters of a ball of 2 kg: friction stops a slip by c = 7 m/s^2."""
-    return PUSHED.array(Pushed(Parameters(a, k, 2.0, mu, 10.0), float(mode), push, *[NONE] * 3))
+    return PUSHED.array(Pushed(Parameters(a, k, 2.0, mu, g), float(mode), push, *[NONE] * 3))
 
 
 def unknowns(u=(0.0, 0.0), p=(0.0, 0.0), spin=0.0, time=0.0):
@@ -232,7 +234,8 @@ def test_a_rolling_ends_where_a_push_that_turns_with_the_ball_outgrows_the_grip(
 
 @pytest.mark.parametrize(('what', 'u', 'mode'), [
     ({}, (0.0, 0.0), ROLLING), ({}, (0.0, 1e-30), SLIDING), ({}, (-1.0, 0.0), SLIDING),
-    ({'mu': 0.0}, (1.0, 0.0), GLIDING), ({'push': (14.0, 0.0, 0.0)}, (0.0, 0.0), ROLLING),
+    ({'mu': 0.0}, (1.0, 0.0), GLIDING), ({'g': 0.0}, (1.0, 0.0), GLIDING),
+    ({'push': (14.0, 0.0, 0.0)}, (0.0, 0.0), ROLLING),
     ({'push': (0.0, -14.1, 0.0)}, (0.0, 0.0), CREEPING)])
 def test_the_phase_that_begins_is_that_of_slip_friction_and_drive(what, u, mode):
     """Friction holds a drive of 7 m/s^2, that of 14 N."""
@@ -316,3 +319,25 @@ def test_a_course_goes_from_phase_to_phase_and_tells_where_sliding_begins_and_en
     made._write = lambda time, y, out: written.append((time, *y[:2], out))
     made.states(np.array([3.5, 2.25]), ['a', 'b'])
     assert written == [(3.5, 1.0, 1.5, 'a'), (2.25, 0.0, 0.25, 'b')]
+
+
+@pytest.mark.parametrize(('frame', 'turns'), [('body', True), ('world', False)])
+def test_a_wrench_holds_along_its_own_axes(frame, turns, monkeypatch):
+    monkeypatch.setattr(table, 'specialise', lambda template, **bindings: sorted(bindings))
+    monkeypatch.setattr(table, 'unroll', types.SimpleNamespace(
+        step_source=lambda *of: None, trial_source=lambda *of: None,
+        weights=lambda of: [1.0, 2.0]))
+    scene = parse_scene(
+        'scene: ball\nbody: {mass: 2, shape: {solid_sphere: {radius: 0.5}}}\nconstraint: table\n'
+        'effects: [sliding_friction: {mu: 0.2, g: 10}]\ninitial: {}\n')
+    for wrench in (None, Wrench((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), frame)):
+        of = table.OnTable(scene, types.SimpleNamespace(ORDER=8), wrench, None)
+        given = PUSHED.load(of.parameters.tolist())
+        held = {'world_force': NONE, 'world_couple': NONE, 'body_force': NONE,
+                'body_couple': NONE}
+        if wrench:
+            held |= {f'{frame}_force': (1.0, 2.0, 3.0), f'{frame}_couple': (4.0, 5.0, 6.0)}
+        assert {name: getattr(given, name) for name in held} == held
+        assert given.sphere == (0.5, near(0.4, rel=1e-15), 2.0, 0.2, 10.0)
+        assert of.turns_with_body is (turns and wrench is not None)
+        assert (of.order, of.weights.tolist()) == (8, [1.0, 2.0])
