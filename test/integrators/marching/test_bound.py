@@ -89,6 +89,7 @@ def test_a_run_in_one_call_begins_after_the_last_breakpoint(breakpoints, last, m
     assert room[5 + TIME] == last
     assert room[5 + TIME + 1:5 + LENGTH].tolist() == [*range(1, LENGTH)]
     assert made(monkeypatch, (), [0])[0].runner(stepped) is None
+    assert not of.KEEPS_ENTRIES
 
 
 def test_what_has_kinks_is_followed_from_one_to_the_next(monkeypatch):

@@ -74,6 +74,13 @@ def test_a_piece_begins_at_each_breakpoint_before_the_last_time(breakpoints, ask
         assert [one(made, time) for time in order] == [known(time) for time in order]
         assert bound.asked == asked
     assert made.kinks(9.0) == []
+    assert not made.TELLS_EVENTS
+
+
+def test_a_last_time_at_a_breakpoint_is_the_start_of_a_piece():
+    made, bound = started((2.0, 3.0))
+    made.states(np.array([1.0, 2.0]), np.zeros((2, 3)))
+    assert bound.asked == [0.0, 2.0]
 
 
 @pytest.mark.parametrize('time', [700.5, 130.0])

@@ -276,6 +276,7 @@ def test_a_course_begins_with_the_slip_and_what_friction_does_not_change(slip):
     assert y[SPIN] == near(omega[2], rel=1e-15)
     assert y[PLACE:] == (0.0,) * (len(y) - PLACE)
     assert (made._tolerance, made._begin) == (5e-10, 7.0)
+    assert made.TELLS_EVENTS and table.OnTable.KEEPS_ENTRIES
     out = np.empty(14)
     made._write(9.0, (*y[:PLACE], 0.25, -0.5, *y[CLOCK:]), out)
     vector[0], vector[8:10] = 9.0, (1.25, 1.5)
