@@ -17,6 +17,7 @@ from rigid_body_sim.integrators.marching import (
     batch_turning,
 )
 from rigid_body_sim.integrators.marching.taylor_march import GROWTH, UNMOVED
+from rigid_body_sim.numerics.rotations import multiply
 
 O = Plain()
 
@@ -123,3 +124,131 @@ def test_an_attitude_of_a_half_turn_has_no_division_by_nothing(q):
     matrix = Rotation.from_quat(q).as_matrix()
     found = batch_directions._attitude(O, lanes([*matrix[0], *matrix[1]]), lanes(q))
     assert np.array(found)[:, 0] == pytest.approx(q, abs=1e-15)
+
+
+# -- a whole step of eight bodies, beside the equations ------------------------------------------
+
+def law(form, number, y):
+    """Return the rates of the unknowns that move; `number` gives the numbers of the equations."""
+    def table(first, *shape):
+        return np.array([number(first + k) for k in range(math.prod(shape))]).reshape(shape)
+    euler, constant, drag = (table(first, *shape) for first, shape in (
+        (batch_lane.EULER, (3,)), (batch_lane.CONSTANT, (3,)), (batch_lane.DRAG, (3, 3))))
+    dragged = form in (batch_directions.DRAGGED, batch_turning.DRAGGED, batch_hinge.FORM)
+    if len(form.moving) == 3:
+        x, z, rate = y
+        u = table(batch_lane.U, 3, 3)[2]
+        return [z * rate, -x * rate, constant[2] + u[0] * x + u[1] * z + drag[2, 2] * rate]
+    attitude, w = y[:-3], y[-3:]
+    grown = (euler * [w[1] * w[2], w[2] * w[0], w[0] * w[1]] + constant
+             + (drag @ w if dragged else 0.0))
+    if len(attitude) == 4:
+        return [*0.5 * np.array(multiply(*attitude, *w, 0.0)), *grown]
+    e1, e2 = attitude[:3], attitude[3:]
+    grown = grown + table(batch_lane.U, 3, 3) @ e1 + table(batch_lane.V, 3) * e2
+    return [*np.cross(e1, w), *np.cross(e2, w), *grown]
+
+
+def start_of(form):
+    """Return the rows of eight bodies with random numbers, each at a time and rates of its own."""
+    draw, module = np.random.default_rng(7), {3: batch_hinge, 7: batch_turning,
+                                              9: batch_directions}[len(form.moving)]
+    table = np.zeros((batch_lane.ROWS, LANES))
+    table[batch_lane.EULER:batch_lane.EULER + 3] = [[-0.3], [0.6], [-0.4]]
+    table[batch_lane.CONSTANT:batch_lane.INVERSES] = draw.uniform(-1.0, 1.0, (24, 1))
+    table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0).reshape(-1, 1)
+    for lane in range(LANES):
+        q, omega = draw.normal(size=4), draw.uniform(-1.0, 1.0, 3)
+        if form is batch_hinge.FORM:
+            q[:2] = omega[:2] = 0.0
+        q /= np.linalg.norm(q)
+        table[batch_lane.QUATERNION:batch_lane.SERIES, lane] = q
+        table[batch_lane.SERIES:batch_lane.SERIES + batch_lane.UNKNOWNS, lane] = np.concatenate(
+            module.unknowns(tuple(q), tuple(omega)))
+    table[batch_lane.TIME], table[batch_lane.END] = np.arange(LANES) / 8.0, 1e3
+    table[batch_lane.LOST:batch_lane.LOST + batch_lane.UNKNOWNS] = 2.0 ** -60
+    return module, table
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('form', [
+    batch_directions.FORM, batch_directions.DRAGGED, batch_turning.FORM, batch_turning.DRAGGED,
+    batch_hinge.FORM], ids=['directions', 'dragged', 'turning', 'dragged turning', 'hinge'])
+def test_a_step_goes_along_the_series_of_the_equations(form):
+    """The polynomials of the unknowns have the rates that the equations say, at 0.05 s."""
+    order = batch_lane.COARSE
+    short, (module, table) = form._replace(order=order), start_of(form)
+    begin, W = table.copy(), table.ravel().copy()
+    batch_step.advance(O, W, 1e-24, short)
+    table = W.reshape(table.shape)
+    h = table[batch_lane.STEP]
+    assert table[batch_lane.TIME] == near(begin[batch_lane.TIME] + h, rel=1e-15)
+    assert 0.05 < h.min() < h.max() < 2.0
+    first = batch_lane.UNKNOWNS + batch_lane.SERIES
+    higher = table[first:first + order * batch_lane.UNKNOWNS].reshape(order, -1, LANES)
+    places = slice(batch_lane.SERIES, batch_lane.SERIES + batch_lane.UNKNOWNS)
+    for lane in range(LANES):
+        coefficients = np.vstack([begin[places, lane], higher[:, :, lane]])[:, form.moving]
+        y = np.polynomial.polynomial.polyval(0.05, coefficients)
+        slope = np.polynomial.polynomial.polyval(
+            0.05, np.polynomial.polynomial.polyder(coefficients))
+        # measured: 4e-16
+        assert slope == pytest.approx(
+            np.array(law(form, lambda place, lane=lane: begin[place, lane], y)), abs=1e-14)
+        end = np.polynomial.polynomial.polyval(h[lane], coefficients)
+        moved = table[places, lane][list(form.moving)]
+        assert moved == pytest.approx(end, abs=1e-11)    # 1e-12: lengths are made 1 again
+        omega = table[batch_lane.SERIES + batch_lane.OMEGA:, lane][:3]
+        q = table[batch_lane.QUATERNION:batch_lane.SERIES, lane]
+        turned = np.concatenate(module.unknowns(tuple(q), tuple(omega)))[list(form.moving)]
+        assert moved == pytest.approx(turned, abs=2e-15)    # 5e-16
+        assert table[batch_lane.SOUND, lane] == near(moved @ moved, rel=1e-14)
+    before = slice(batch_lane.BEFORE_TIME, batch_lane.END)
+    kept = [begin[batch_lane.TIME], *begin[batch_lane.QUATERNION:batch_lane.SERIES],
+            *begin[places]]
+    moving = [k for k in range(len(kept)) if k < 5 or k - 5 in form.moving]
+    assert (table[before][moving] == np.array(kept)[moving]).all()
+    # between the points the attitude is that of the same series
+    W[LANES * batch_lane.SINCE:LANES * (batch_lane.SINCE + 1)] = 0.3 * h
+    batch_step.between(O, W, short)
+    for lane in range(LANES):
+        found = W.reshape(table.shape)[batch_lane.FOUND:batch_lane.FOUND + 7, lane]
+        coefficients = np.vstack([begin[places, lane], higher[:, :, lane]])
+        y = np.polynomial.polynomial.polyval(0.3 * h[lane], coefficients)
+        turned = np.concatenate(module.unknowns(tuple(found[:4]), tuple(found[4:])))
+        assert turned[list(form.moving)] == pytest.approx(y[list(form.moving)], abs=1e-11)
+        q = begin[batch_lane.QUATERNION:batch_lane.SERIES, lane]
+        assert found[:4] @ q > 0.5    # its sign is the one that is near
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('room', 'ends'), [(1.05, True), (1.15, False), (0.5, True)])
+def test_a_step_that_leaves_less_than_a_tenth_of_itself_goes_to_the_end(room, ends):
+    """The lanes end at times of their own."""
+    form = batch_hinge.FORM._replace(order=batch_lane.COARSE)
+    _, table = start_of(batch_hinge.FORM)
+    W = table.ravel().copy()
+    batch_step.advance(O, W, 1e-24, form)
+    h = W.reshape(table.shape)[batch_lane.STEP].copy()
+    table[batch_lane.END] = table[batch_lane.TIME] + room * h
+    W = table.ravel().copy()
+    batch_step.advance(O, W, 1e-24, form)
+    found = W.reshape(table.shape)
+    assert found[batch_lane.STEP] == near(room * h if ends else h, rel=1e-14)
+    if ends:
+        assert (found[batch_lane.TIME] == table[batch_lane.END]).all()
+
+
+def test_a_scale_is_the_largest_rate_so_far_or_what_the_torque_gives():
+    """Of a body at rest: the root of omega'^2, a squared rate; else the larger of both."""
+    form = batch_hinge.FORM._replace(order=batch_lane.COARSE)
+    for rate, scale, expected in ((0.0, 0.0, 0.75), (2.0, 0.0, 4.0), (0.5, 9.0, 9.0)):
+        table = np.zeros((batch_lane.ROWS, LANES))
+        table[[batch_lane.QUATERNION + 3, batch_lane.SERIES]] = 1.0
+        table[batch_lane.SERIES + batch_hinge.RATE] = rate
+        table[batch_lane.SCALE], table[batch_lane.CONSTANT + 2] = scale, -0.75
+        table[batch_lane.INVERSES:] = 1.0 / np.arange(1.0, batch_lane.ORDER + 1.0).reshape(-1, 1)
+        table[batch_lane.END] = 1e3
+        W = table.ravel()
+        batch_step.advance(O, W, 1e-24, form)
+        assert (W.reshape(table.shape)[batch_lane.SCALE] == expected).all()

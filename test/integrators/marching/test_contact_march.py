@@ -16,7 +16,9 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.contact_views import (
     CREEPING,
     FLIGHT,
+    GLIDING,
     LEDGER,
+    PIVOTING,
     ROLLING,
     ROW,
     SLIDING,
@@ -251,3 +253,165 @@ def test_the_slip_of_a_ball_falls_in_proportion_to_time_until_it_dies(accuracy, 
                                  states.angular_velocity, strict=True):
         slip = v + np.cross(rotate(*q, *omega), [0.0, 0.0, -0.05])
         assert math.hypot(slip[0], slip[1]) == pytest.approx(rate * (ends - time), abs=most)
+
+
+# -- its parts, beside their formulas ------------------------------------------------------------
+
+def rows(begin=1.0, end=1.0, others=1.0, k=1, **at):
+    """Return rows in which the number k is so large at the stages; `at`: s3 is that at stage 3."""
+    w, place = np.zeros((contact_step.WORK_ROWS, ROW.size)), ROW.part('watched').first + k
+    w[1:contact_march.STAGES, place] = others
+    w[0, place], w[contact_march.END, place] = begin, end
+    for name, value in at.items():
+        w[int(name[1:]), place] = value
+    return w
+
+
+LAST = f's{contact_march.STAGES - 1}'
+
+
+@pytest.mark.parametrize(('numbers', 'falls'), [
+    ({}, False), ({'end': -1e-9}, True), ({'s1': -1e-9}, True), ({LAST: -1e-9}, True),
+    ({'end': 0.099}, True), ({'end': 0.101}, False), ({'s5': 0.099}, True),
+    ({'s5': 0.101}, False), ({'s5': 0.101, 'end': 1.1}, True),
+    ({'begin': 0.05}, False),                     # it rises from small on
+    ({'begin': 0.05, 's1': 0.04}, True), ({'begin': 0.05, 's1': 0.05}, False),
+    ({'begin': 0.0, 's1': -0.1, 'end': -0.1}, True), ({'begin': 0.0, 's1': -0.1}, False),
+    ({'begin': -0.1, 'end': -0.2}, True), ({'begin': -0.1, 'end': 0.0}, False),
+    ({'begin': 0.0, 'end': -0.1, 'k': contact_march.STOPS}, False),
+    ({'begin': 1.0, 'end': -0.1, 'k': contact_march.STOPS}, True)])
+def test_a_number_may_fall_below_zero_where_it_does_so_at_a_stage_or_comes_close(numbers, falls):
+    """Within a tenth of the larger end, and below its beginning; from zero on only at the end."""
+    assert bool(KERNELS._falls(rows(**numbers), numbers.get('k', 1))) is falls
+
+
+@pytest.mark.parametrize(('numbers', 'rates', 'dips'), [
+    ({}, {}, False), ({'end': -1e-9}, {}, True), ({'s1': -1e-9}, {}, True),
+    ({LAST: -1e-9}, {}, True), ({'begin': 1e-6, 's1': 2e-6}, {}, False),
+    ({'begin': 1e-6, 's1': 2e-6}, {0: -1.0}, True),
+    ({'begin': 1e-6, 's1': 2e-6}, {contact_march.END: -1.0}, True),
+    ({'begin': 1e-6, 's1': 2e-6}, {1: -1.0}, True),
+    ({'begin': 1e-6, 's1': 2e-6}, {contact_march.STAGES - 1: -1.0}, True),
+    ({'begin': 0.05, 's4': 0.04}, {}, True), ({'end': 0.099}, {}, True),
+    ({'end': 0.101}, {0: -1.0}, False), ({'s4': 0.101}, {0: -1.0}, False),
+    ({'begin': 0.1, 'end': 0.2, 's4': 0.05}, {0: -1.0}, True),
+    ({'begin': 0.1, 'end': 0.2, 's4': 0.05, 'others': 0.3}, {0: -1.0}, False),
+    ({'begin': 0.1, 'end': 0.2, 'others': 0.3, 's4': 0.05, 's6': 0.6}, {0: -1.0}, True)])
+def test_a_gap_may_dip_below_zero_where_it_falls_at_a_stage_and_comes_close(numbers, rates, dips):
+    """Within a tenth of the most that it is in the step; one that only grows does not."""
+    if numbers.get('s4') == 0.05 and 'others' not in numbers:
+        numbers = numbers | {'others': 0.6}
+    w = rows(**numbers, k=contact_march.NORMAL)
+    for row, rate in rates.items():
+        w[row, GAP] = rate
+    assert bool(KERNELS._dips(w)) is dips
+
+
+@pytest.mark.parametrize(('error', 'factor'), [
+    (0.0, 4.0), (1e-9, 0.9), (1e-9 * 1.5 ** 7, 0.6), (1e-9 * 0.3 ** 7, 3.0), (1e-20, 4.0),
+    (1.0, 0.1), (math.inf, 0.1), (math.nan, 0.1)])
+def test_the_next_step_is_so_much_longer_that_its_error_is_what_is_allowed(error, factor):
+    """Errors go with its eighth power, what is allowed with the first; nine tenths to be sure."""
+    assert contact_step.ORDER == 8
+    assert KERNELS._factor(error, 1e-9) == near(factor, rel=1e-14)
+
+
+def test_a_phase_has_the_name_of_what_fell_below_zero():
+    """A number in each mode: load or gap, grip, firmness, what jumps, stops or rolls."""
+    march = contact_march
+    others = [march.PARADOX, march.JUMP, march.STOPPED, march.HELD]
+    for mode, first in ((FLIGHT, [march.TOUCHED, march.LET_GO]),
+                        (ROLLING, [march.LOST_CONTACT, march.LET_GO]),
+                        (SLIDING, [march.LOST_CONTACT, march.LET_GO]),
+                        (GLIDING, [march.LOST_CONTACT, march.LET_GO]),
+                        (CREEPING, [march.LOST_CONTACT, march.FASTER]),
+                        (PIVOTING, [march.LOST_CONTACT, march.FASTER])):
+        assert [KERNELS._named(mode, k) for k in range(WATCHES)] == first + others
+
+
+@pytest.mark.parametrize(('before', 'after', 'ahead'), [
+    (5e-4, 4e-4, 8.0), (9e-4, 3e-4, 1.0), (1.1e-3, 4e-4, 0.0), (4e-4, 5e-4, 0.0),
+    (4e-4, 4e-4, 0.0), (4e-4, -1e-4, 0.0), (4e-4, 0.0, 0.0)])
+def test_a_firmness_that_goes_on_falling_jams_when_it_would_be_zero(before, after, ahead):
+    """In steps of 2 s, below 1e-3."""
+    w = rows(before, after, k=contact_march.FIRMNESS)
+    assert KERNELS._until_jam(w, 2.0) == near(ahead, rel=1e-14)
+
+
+@pytest.mark.parametrize(('mode', 'pace', 'slip', 'dies'), [
+    (SLIDING, 0.9, (-1.0, 0.5), True), (SLIDING, 1.1, (-1.0, 0.5), False),
+    (ROLLING, 0.9, (-1.0, 0.5), False), (SLIDING, 0.9, (1.0, -0.5), False),
+    (SLIDING, 0.9, (0.5, 1.0), False), (SLIDING, 0.9, (0.0, -1.0), True)])
+def test_a_slip_dies_that_shrinks_and_is_no_more_than_an_error(mode, pace, slip, dies):
+    """The slip is (2, 1), its rate as given; 2^-50 of the speeds, 3 m/s, may be an error."""
+    p, w, y = np.zeros(CONTACT.size), rows(), np.zeros(SIZE)
+    p[contact_march.MODE], p[contact_march.SWIFT] = mode, 3.0
+    y[U:U + 2], w[0, U:U + 2] = (2.0, 1.0), slip
+    w[0, PACE] = pace * 3.0 * 2.0 ** -50
+    assert bool(KERNELS._dies(p, w, y)) is dies
+
+
+@pytest.mark.parametrize(('spin', 'lag', 'grip', 'settles'), [
+    (4.0, 1e-3, 6e-4, True), (4.0, 1e-3, 4e-4, False), (-4.0, 1e-3, 6e-4, True),
+    (-1e-3, 1.0, 3e-5, True), (1e-3, 1.0, 2e-5, False), (0.0, 1.0, 0.0, False)])
+def test_a_slip_settles_where_pivoting_leaves_half_of_its_room_free(spin, lag, grip, settles):
+    """Of the lag, or of the spin of the patch, 0.05 m times its rate, if that is less."""
+    p, w, y = np.zeros(CONTACT.size + 3 * WATCHES), rows(), np.zeros(SIZE)
+    y[3], y[OMEGA + 2] = 1.0, spin
+    p[contact_march.MODE], p[contact_march.SIDE] = SLIDING, 0.0
+    p[contact_march.PATCH], p[contact_march.LAG] = 0.05, lag
+    p[CONTACT.size + 3 * contact_march.GRIP] = grip
+    assert bool(KERNELS._settles(p, w, y)) is settles
+    assert (p[contact_march.MODE], p[contact_march.SIDE]) == (SLIDING, 0.0)
+
+
+def test_the_first_step_is_what_the_fastest_change_allows():
+    """2 rad/s of the body with 5/2 rad/s^2 per rad/s, and the turn of its slip at 0.5 m/s."""
+    y, row, front = np.arange(1.0, SIZE + 1.0), np.zeros(ROW.size), np.ones(contact_march.POINT)
+    row[OMEGA:OMEGA + 3], row[U:U + 2], row[PACE] = (3.0, 0.0, 4.0), (0.3, 0.4), 0.5
+    for mode, fastest in ((SLIDING, 2.0 * 0.5 + 2.5 + 1.0), (ROLLING, 2.0 * 0.5 + 2.5)):
+        p, meta = np.zeros(CONTACT.size), np.full(contact_march.META, 7.0)
+        p[contact_march.MODE] = mode
+        meta[contact_march.TOLERANCE], meta[contact_march.RATE] = 2.0 ** -24, 2.0
+        KERNELS.begin(p, row, front, meta, y)
+        assert meta[contact_march.PLANNED] == near(0.125 / fastest, rel=1e-14)
+        assert front.tolist() == [*y, *[0.0] * SIZE]
+        assert meta[[contact_march.COUNT, contact_march.STRIDE, contact_march.STORED,
+                     contact_march.STATUS, contact_march.STEPS, contact_march.PLACED,
+                     contact_march.CROWDED, contact_march.FADED, contact_march.JAMMED,
+                     contact_march.AHEAD]].tolist() == [0, 1, 0, 0, 0, -1, 0, 0, 0, 0]
+
+
+def test_a_slip_that_jams_for_many_steps_is_at_the_paradox(monkeypatch):
+    """A falls by 1e-9/s from 5e-4: steps of less than a second tell 5e5 s, so long that it is."""
+    monkeypatch.setattr(KERNELS, 'STALLED', 3)
+    phase = Phase(SLIDING, watch2=(5e-4, -1e-9, 0.0))
+    assert phase.march(0.9) == contact_march.PARADOX
+    assert phase.meta[[contact_march.STEPS, contact_march.JAMMED]].tolist() == [4.0, 4.0]
+    assert phase.meta[contact_march.AHEAD] == near(5e5, rel=1e-5)
+    assert Phase(SLIDING, watch2=(2e-3, -1e-9, 0.0)).march(0.9) == contact_march.RUNNING
+    assert Phase(ROLLING, watch2=(5e-4, -1e-9, 0.0)).march(3.0) == contact_march.RUNNING
+
+
+def test_a_slip_that_dies_for_many_steps_is_dead(monkeypatch):
+    """Where it is never small enough for that by itself: below 2^-50 so many steps are enough."""
+    monkeypatch.setattr(KERNELS, 'STALLED', 3)
+    monkeypatch.setattr(KERNELS, 'DEAD', 0.0)
+    phase = Phase(SLIDING, slip=2.0 ** -48)
+    assert phase.march(2.0) == contact_march.STUCK
+    assert phase.meta[contact_march.CROWDED] == 4.0
+    assert phase.w[contact_march.END, PACE] < 2.0 ** -50
+
+
+def test_a_slip_that_fades_pivots_after_so_many_steps_if_it_settles(monkeypatch):
+    """Where it has a patch; slower than 1e-3 of the speeds it fades."""
+    monkeypatch.setattr(KERNELS, 'STALLED', 3)
+    for slip, patch, status in ((9e-4, 0.1, contact_march.SETTLED),
+                                (9e-4, 0.0, contact_march.RUNNING),
+                                (1.0, 0.1, contact_march.RUNNING)):
+        phase = Phase(SLIDING, slip=slip)
+        phase.p[contact_march.PATCH] = patch
+        assert phase.march(0.9 * slip) == status
+        assert bool(phase.meta[contact_march.FADED]) is (slip < 1.0)
+        if status == contact_march.SETTLED:
+            assert phase.meta[[contact_march.STEPS, contact_march.FADED]].tolist() == [3.0, 3.0]

@@ -7,8 +7,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from data import smooth_cases
+from near import near
 
 from rigid_body_sim.integrators.families import power_series
+from rigid_body_sim.integrators.marching import taylor_march
 from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.taylor_series import ORDER
 from rigid_body_sim.integrators.solver import Stepped
@@ -126,3 +128,55 @@ def test_between_two_points_is_the_series_of_the_first():
     control[march.FOR] = math.nan
     control[march.WORK:] = 7.0
     assert march.between(p, control, point, following, 0.05) == half
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('planned', [0.5, 2.0])
+@pytest.mark.parametrize('counts', ['final', 'before'])
+@pytest.mark.parametrize(('share', 'rel'), [
+    (1.0, 1e-14), (1.1, 1e-8), (0.9, 1e-8), (2.0, 1e-4), (0.07, 0.01), (15.0, 0.01),
+    (0.06, None), (17.0, None), (1e-9, None), (1e12, None), (1e-60, None)])
+def test_a_step_is_as_planned_where_its_terms_are_nearly_what_is_allowed(
+        planned, counts, share, rel):
+    """Within a factor of 16 of their squares; then the plan follows six tenths of the way.
+
+    That is by a rational function, near 1 the power. Else the step is chosen anew, 4 times the
+    plan at most. The larger term counts, the last one by the plan.
+    """
+    tolerance = 1e-9
+    square = share * tolerance ** 2 / planned ** (2 * (ORDER - 2))
+    terms = {'final': (square / planned ** 2, 0.9 * square),
+             'before': (0.9 * square / planned ** 2, square)}[counts]
+    h, plan = taylor_march.chosen(*terms, tolerance, planned)
+    asked = share ** (-0.5 / (ORDER - 2))
+    if rel:
+        assert h == planned
+        # measured: 1e-16, 1.4e-9 and 1.6e-5; 7e-3 at the ends
+        assert plan == near(planned * asked ** 0.6, rel=rel)
+    else:
+        assert h == plan == near(planned * min(4.0, asked), rel=1e-13)
+
+
+@pytest.mark.without_numba
+def test_the_first_step_is_what_the_last_term_allows_and_all_is_where_nothing_moves():
+    final, tolerance = 1e-3, 1e-9
+    first = (tolerance ** 2 / final) ** (0.5 / (ORDER - 1))
+    assert taylor_march.chosen(final, 0.0, tolerance, 0.0) == (
+        near(first, rel=1e-14), near(first, rel=1e-14))
+    assert taylor_march.chosen(0.0, 0.0, tolerance, 0.0) == (1e-3, 1e-3)
+    assert taylor_march.chosen(0.0, 0.0, tolerance, 0.25) == (1.0, 1.0)
+
+
+@pytest.mark.without_numba
+def test_the_terms_of_omega_count_beside_their_scale():
+    """Of q (1, 2, 3, 4) and of omega (5, 6, 7), whose squared scale is 4 or nothing yet."""
+    S = np.zeros(taylor_march.ROOM)
+    S[taylor_march.PLACES * 2:][:7] = np.arange(1.0, 8.0)
+    assert taylor_march._square(S, 2, 0.25) == 30.0 + 0.25 * 110.0
+    S[:] = 0.0
+    S[taylor_march.PLACES * ORDER:][:7] = np.arange(1.0, 8.0) * 1e-6
+    S[taylor_march.PLACES * (ORDER - 1):][:7] = np.arange(1.0, 8.0) * 2e-6
+    for scale, weight in ((4.0, 0.25), (1e-301, 0.0)):
+        square = 30.0 + weight * 110.0
+        expected = taylor_march.chosen(square * 1e-12, square * 4e-12, 1e-9, 3.0)
+        assert taylor_march._step(S, 1e-9, 3.0, scale) == near(expected, rel=1e-14)
