@@ -28,6 +28,10 @@ def test_a_family_with_lanes_has_a_batch_mode(family):
     assert isinstance(family, protocols.LanesFamily) == family.LANES
 
 
+def test_steps_of_a_runge_kutta_method_alone_end_where_the_sliding_of_a_ball_does():
+    assert [family for family in FAMILIES if family.TABLE] == [GENERAL.FAMILY]
+
+
 def test_a_missing_declaration_is_found():
     names = {name: value for name, value in vars(GENERAL).items() if name != 'STIFF'}
     assert not isinstance(types.SimpleNamespace(**names), protocols.Method)

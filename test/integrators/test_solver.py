@@ -11,7 +11,7 @@ from near import near
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import solver
 from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED
-from rigid_body_sim.integrators.solver import Stepped, _latest, _naming
+from rigid_body_sim.integrators.solver import Stepped, _check_control, _latest, _naming
 from rigid_body_sim.scene.scene import load_scene
 
 pytestmark = pytest.mark.without_numba
@@ -133,3 +133,23 @@ def test_what_fails_in_a_body_of_many_names_it():
     with pytest.raises(NotConverged, match=r'^body 7: too far$') as found, _naming(7):
         raise NotConverged('too far', 2.5)
     assert found.value.time == 2.5
+
+
+BOTH = 'accuracy', 'step'
+
+
+@pytest.mark.parametrize(('takes', 'accuracy', 'step', 'where'), [
+    (BOTH, None, None, 'method'), (BOTH, 1e-15, None, None), (BOTH, 9e-16, None, 'accuracy'),
+    (BOTH, math.inf, None, 'accuracy'), (BOTH, math.nan, 0.1, 'accuracy'),
+    (BOTH, None, 5e-324, None), (BOTH, None, 0.0, 'step'), (BOTH, 1e-9, -0.1, 'step'),
+    (BOTH, None, math.inf, 'step'), (BOTH, None, math.nan, 'step'), (BOTH, 1e-9, 0.1, None),
+    (('step',), 1e-9, 0.1, None), (('step',), 1e-9, None, 'step'),
+    (('accuracy',), 1e-9, None, None), (('accuracy',), 1e-9, 0.1, 'step')])
+def test_a_method_takes_what_controls_it_and_no_number_that_cannot_be(
+        takes, accuracy, step, where):
+    method = types.SimpleNamespace(NAME='dop8', TAKES=takes)
+    if where is None:
+        _check_control(method, accuracy, step)
+        return
+    with pytest.raises(BadInput, match=f'^{where}: '):
+        _check_control(method, accuracy, step)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ledger's entries: those of the published trajectory, however rarely they are asked for."""
 
+import functools
 import json
 import os
 import pathlib
@@ -14,7 +15,9 @@ from soak import IN_SOAK
 
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
-from rigid_body_sim.mechanics.quadrature import Actors, Quadrature, _edges
+from rigid_body_sim.mechanics.parameters import SCENE
+from rigid_body_sim.mechanics.quadrature import Actors, Quadrature, _edges, _source
+from rigid_body_sim.scene.effects.protocol import Acting
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -252,3 +255,55 @@ def test_a_coarse_tolerance_that_is_fine_enough_leaves_the_ledger_as_fine_as_was
     size = np.abs(exact).max()
     assert np.abs(fine - exact).max() <= 1e-15 * size    # 6.7e-17
     assert np.abs(loose - exact).max() > 1e-9 * size     # 6.1e-6: what is asked matters
+
+
+ROWS = np.random.default_rng(3).normal(size=(5, 3, 20)).round(3)
+
+
+def linear(k, *numbers):
+    """Return what kernel k makes of its values and the state: another linear function of each."""
+    return tuple((ROWS[k][:, :len(numbers)] @ numbers).tolist())
+
+
+weighs, blows, creeps, brakes, drags, falls = (
+    functools.partial(linear, k) for k in (0, 1, 2, 3, 4, 0))
+
+
+@pytest.mark.parametrize('carried', [False, True])
+@pytest.mark.without_numba
+def test_what_acts_is_booked_as_work_as_heat_or_not_at_all(carried):
+    """Work by its power; heat by what is taken, that of axes that creep by u = u0 + a c Gamma.
+
+    Potentials Gamma do work on these axes, Gamma . u, and are no entry themselves. At a pivot that
+    moves with v the bearing balances each force: its work is less by F . v.
+    """
+    acts = [Acting(f'{__name__}:weighs', (2.0, 3.0), 'torque', 'potential'),
+            Acting(f'{__name__}:blows', (4.0,), 'force', 'work', in_field=True),
+            Acting(f'{__name__}:creeps', (0.5, 6.0), 'turning', 'heat'),
+            Acting(f'{__name__}:brakes', (7.0,), 'torque', 'work', in_field=True, inner=True),
+            Acting(f'{__name__}:drags', (), 'force', 'heat'),
+            Acting(f'{__name__}:drags', (), 'torque', 'heat'),
+            Acting(f'{__name__}:falls', (), 'force', 'potential')]
+    q, omega, v, m = (0.1, -0.5, 0.5, 0.7), (1.0, -2.0, 3.0), (7.0, -8.0, 9.0), (0.2, 0.3, -0.4)
+    time, place = 0.4, (4.0, -5.0, 6.0)
+    state, field = (*q, *omega, *v), (time, *place)
+    pull, wind, drag, brake, fall = (np.array(one) for one in (
+        weighs(2.0, 3.0, *state), blows(4.0, *state, *field), drags(*state),
+        brakes(7.0, *state, *field), falls(*state)))
+    turn = creeps(0.5, 6.0, *state) + 0.5 * pull
+    names = {'compiled': lambda function: function}
+    exec(_source(acts, carried), names)
+    p = (*[9.0] * SCENE.size, 2.0, 3.0, 4.0, 0.5, 6.0, 7.0)
+    work, heat, torque = names['acting'](p, q, omega, v, m, time, place)
+    assert torque == near(pull + drag, rel=1e-14)
+    bearing = -(drag + fall) @ v if carried else wind @ v
+    assert work == near(bearing + brake @ omega, rel=1e-13)
+    taken = np.cross(m, turn) @ omega + drag @ v + drag @ omega - pull @ turn
+    assert heat == near(-taken, rel=1e-13)
+
+
+@pytest.mark.without_numba
+def test_where_nothing_acts_nothing_is_booked():
+    names = {'compiled': lambda function: function}
+    exec(_source([], False), names)
+    assert names['acting'](None, None, None, None, None, 0.0, None) == (0.0, 0.0, (0.0, 0.0, 0.0))

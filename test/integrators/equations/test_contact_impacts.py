@@ -3,7 +3,9 @@
 
 import numpy as np
 import pytest
+from mechanics.contact.test_touch import scene_of
 from near import near
+from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.integrators.equations import contact_impacts
 from rigid_body_sim.integrators.equations.contact_impacts import bearable, rebound
@@ -76,3 +78,26 @@ def test_a_ball_that_bounces_loses_its_slip_or_slides_on_with_friction_mu(mass, 
         0.5 * moment * (omega @ omega - spin @ spin))
     assert after.ledger.struck - 1.5 == near(lost, rel=1e-12)
     assert after.ledger.impulse == near(np.array([1.0, 2.0, 3.0]) + turn, rel=1e-14)
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_any_body_leaves_the_plane_with_the_restitution_at_its_lowest_point(seed):
+    """Its energy, that of the motion of an ellipsoid, falls by what the ledger books."""
+    p, draw = contact_parameters(scene_of('ellipsoid', ', sliding_friction: {mu: 0.25}')), (
+        np.random.default_rng(seed))
+    y, impact, inertia = np.zeros(UNKNOWNS.size), np.empty(contact_impacts.IMPACT.size), np.array(
+        [[0.03, 0.001, 0.0], [0.001, 0.04, 0.002], [0.0, 0.002, 0.05]])
+    omega, u = draw.normal(size=(2, 3))
+    start = UNKNOWNS.load(y.tolist())._replace(
+        q=tuple(Rotation.random(random_state=seed).as_quat().tolist()), omega=tuple(omega),
+        u=(*u[:2], -3.0))
+    UNKNOWNS.store(y, start)
+    before = contact_impacts.velocity_of_lowest(p, y)
+    contact_impacts.collide(p, y, 0.6, impact)
+    after, found = UNKNOWNS.load(y.tolist()), contact_impacts.IMPACT.load(impact.tolist())
+    left = contact_impacts.velocity_of_lowest(p, y)
+    assert (found.before, found.after) == near((before[2], -0.6 * before[2]), rel=1e-14)
+    assert left == pytest.approx((*found.slip, found.after), abs=1e-13)    # 3e-15
+    lost = sum(sign * (2.0 * np.dot(one.u, one.u) + one.omega @ inertia @ one.omega) / 2.0
+               for sign, one in ((1.0, start), (-1.0, after)))
+    assert after.ledger.struck == near(lost, rel=1e-12)

@@ -89,3 +89,20 @@ def test_drift_of_more_turns_than_mean_anything_is_not_a_number():
     y, _ = turned_freely(
         parameters_of((2.0, 3.0, 4.0)), (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1e6), NOTHING, 1.0)
     assert all(math.isnan(value) for value in y)
+
+
+@pytest.mark.parametrize('h', [1.0, -1.0, 0.5])
+@pytest.mark.parametrize('axis', range(3))
+def test_a_body_that_turns_about_one_axis_turns_by_its_rate_times_the_time(axis, h):
+    """Twenty radians, eighty spans of a fourth of one, forward or back."""
+    p, omega = parameters_of((2.0, 3.0, 4.0)), [0.0, 0.0, 0.0]
+    omega[axis] = 20.0
+    y, _ = turned_freely(p, (0.0, 0.0, 0.0, 1.0, *omega), NOTHING, h)
+    expected = [0.0, 0.0, 0.0, math.cos(10.0 * h), *omega]
+    expected[axis] = math.sin(10.0 * h)
+    assert y == pytest.approx(expected, abs=1e-13)    # 1.3e-14
+
+
+def test_a_drift_of_no_time_changes_nothing():
+    start, lost = (0.1, 0.2, -0.3, math.sqrt(0.86), 0.7, -0.4, 1.1), (1e-18,) * 7
+    assert turned_freely(parameters_of((2.0, 3.0, 4.0)), start, lost, 0.0) == (start, lost)

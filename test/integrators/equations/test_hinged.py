@@ -73,3 +73,21 @@ def test_the_rate_grows_by_the_torque_about_the_axis_over_the_moment(in_field):
     found = bound.rate(p, (phi, speed, time) if in_field else (phi, speed))
     # measured: 2e-16
     assert found == near((speed, growth, 1.0)[:len(found)], rel=4e-15)
+
+
+@pytest.mark.parametrize('in_field', [False, True])
+def test_a_state_is_an_angle_and_its_rate_and_back(in_field):
+    """From a start on, where phi is 0: the place stays, and the hinge point is the reference."""
+    kind, n, q = hinged_field if in_field else hinged, (0.48, -0.6, 0.64), (0.1, -0.5, 0.5, 0.7)
+    bound = specialise(kind, torque='def torque(p, *state):\n    return 0.0, 0.0, 0.0\n')
+    p, point, out = np.zeros(hinged.PARAMETERS.size), np.full(6, 9.0), np.empty(14)
+    euler.BODY.part('hinge_axis').store(p, n)
+    euler.BODY.part('frame_axes').store(p, (0.0, 0.0, 0.0, 1.0))
+    place = (0.7, -0.8, 0.9)
+    bound.start(p, np.array([0.3, *q, *(-1.7 * np.array(n)), *place, 0.0, 0.0, 0.0]), point, 2)
+    assert point == near([9.0, 9.0, 0.0, -1.7, *([0.3] if in_field else [9.0]), 9.0], rel=1e-15)
+    assert hinged.load_attitude(p) == q
+    bound.write(p, 0.4, (0.9, 2.5), out)
+    turned = multiply(*q, *(np.sin(0.45) * np.array(n)), np.cos(0.45))
+    expected = [0.4, *turned, *(2.5 * np.array(n)), *place, 0.0, 0.0, 0.0]
+    assert out == near(expected, rel=4e-15)    # measured: 2e-16

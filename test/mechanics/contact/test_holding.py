@@ -9,8 +9,13 @@ from mechanics.contact.test_touch import SURFACES, axes, parameters
 from near import near
 
 from rigid_body_sim.mechanics.contact.holding import (
+    Burden,
     against,
+    along_way,
+    bears,
+    burden,
     gripped,
+    gripping,
     growing,
     holds_still,
     rolling_couples,
@@ -18,7 +23,7 @@ from rigid_body_sim.mechanics.contact.holding import (
     way_at,
     way_out,
 )
-from rigid_body_sim.mechanics.contact.parameters import SLOW
+from rigid_body_sim.mechanics.contact.parameters import HELD, SLOW
 from rigid_body_sim.mechanics.contact.touch import lever, tangent
 from rigid_body_sim.scene.surfaces import shifted
 
@@ -197,3 +202,63 @@ def test_the_power_of_rolling_friction_is_against_the_way_of_its_phase(surface, 
         counts = moved @ np.cross(e, n) if c.rim > 0.0 else np.linalg.norm(moved)
         assert np.dot(viscous, omega) == near(-0.02 * counts ** 2, rel=1e-12)
         assert speed == (near(abs(counts), rel=1e-14) if np.any(way) else 0.0)
+
+
+@pytest.mark.parametrize('surface', ['ellipsoid', 'torus'])
+@pytest.mark.parametrize('onset', [0.0, 1.0])
+def test_friction_that_holds_gives_what_the_turning_of_the_body_lacks(surface, onset):
+    """The couple is I omega' less all others; the part of s' that counts is along the way."""
+    c, rows = parameters(surface, ROLLS)._replace(onset=onset), axes(6)
+    e1, e2 = map(np.array, rows[:2])
+    at, torque, grown = posture(c, rows), (0.3, -0.2, 0.1), (0.5, 0.7, -1.1)
+    couple, force = gripping(c, at, torque, grown)
+    assert couple == near(np.array(c.inertia) @ grown - torque, rel=1e-14)
+    assert force == near(against(c, at, couple), rel=1e-14)
+    expected = 0.6 * e1 @ at.moved - 0.8 * e2 @ at.moved if onset else 0.25
+    assert along_way(c, at, (0.6, -0.8), 0.25) == near(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize('mu', [0.3, 0.0])
+@pytest.mark.parametrize('surface', ['disk', 'torus'])
+def test_a_flat_ring_bears_what_balances_force_and_couple_at_its_circle(surface, mu):
+    """The couple of the plane about the middle of the circle; without friction N alone acts."""
+    c, rows = parameters(surface, ROLLS)._replace(mu=mu, middle=(0.02, -0.01, 0.03)), axes(7)
+    F, T, R = np.array([3.0, -4.0, -20.0]), np.array([0.3, -0.5, 0.2]), np.array(rows)
+    found = burden(c, posture(c, rows), tuple(F), tuple(T))
+    foot = np.array(c.middle) - c.size[1] * R[2]
+    held = R.T @ -(F if mu else F * [0.0, 0.0, 1.0])
+    couple = -(T + np.cross(foot, held))
+    assert found.spinning == near(R[2] @ couple, rel=1e-12)
+    assert found.tilting == pytest.approx(couple - (R[2] @ couple) * R[2], abs=1e-15)    # 6e-17
+    assert (found.along, found.normal) == near((5.0, 20.0), rel=1e-15)
+
+
+@pytest.mark.parametrize(('changes', 'borne'), [
+    ({}, True), ({'tilting': (2.4, 3.2, 0.0)}, True), ({'tilting': (0.0, 0.0, 4.01)}, False),
+    ({'along': 4.0, 'spinning': -0.41}, False), ({'along': 4.0, 'spinning': -0.39}, True),
+    ({'along': 6.01}, False), ({'spinning': 1.19}, True), ({'spinning': 1.21}, False),
+    ({'normal': 0.0}, False), ({'normal': -20.0}, False)])
+def test_pressure_bears_a_couple_up_to_n_r_and_friction_the_shares_of_mu_n(changes, borne):
+    """R is 0.2 m, N 20 N and mu 0.3; 4 N along and 0.4 N m about the normal are two shares."""
+    c = parameters('disk', ROLLS)
+    assert (c.size[0], c.mu) == (0.2, 0.3)
+    load = Burden((0.0, 0.0, 0.0), 0.0, 0.0, 20.0)._replace(**changes)
+    assert bears(c, load) is borne
+
+
+@pytest.mark.parametrize('rim', [0.0, 1.0])
+def test_a_film_of_air_rubs_on_a_ring_by_its_inclination(rim):
+    """C_film/sin a adds to the viscous coefficient; of a torus that tips it rubs on s_b alone."""
+    c, rows, omega = parameters('torus', ROLLS)._replace(
+        rolling_viscous=0.02, film=0.003, rim=rim, way=(1.0, 0.0)), axes(4), (0.4, -1.1, 0.8)
+    n = np.array(rows[2])
+    moved = np.array(shifted(c.kind, c.size, rows[2], tuple(np.cross(n, omega))))
+    at = posture(c, rows, omega, tuple(moved))
+    viscous, _, speed, film = rolling_couples(c, at, c.way)
+    assert film == near(0.003 / np.hypot(n[0], n[1]), rel=1e-14)
+    b = np.cross(tangent(rows[2]), n)
+    counts = b @ moved if rim else np.linalg.norm(moved)
+    assert speed == near(abs(counts), rel=1e-13)
+    assert np.dot(viscous, omega) == near(-(0.02 + film) * counts ** 2, rel=1e-12)
+    held = rolling_couples(c._replace(way=HELD), at, HELD)
+    assert held[1:] == ((0.0, 0.0, 0.0), 0.0, film)

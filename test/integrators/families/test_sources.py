@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The kernels that families write for a number of unknowns, beside NumPy."""
+
+import types
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from near import near
+
+from rigid_body_sim.integrators.equations.relaxation import Relaxation
+from rigid_body_sim.integrators.families import (
+    collocation,
+    composition,
+    engine_step,
+    one_step,
+    power_series,
+    runge_kutta,
+    scipy_methods,
+)
+from rigid_body_sim.integrators.marching import relaxing
+from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
+from rigid_body_sim.scene.effects.wrench import Wrench
+from rigid_body_sim.scene.scene import parse_scene
+
+GROUPS = ((0, 2, True), (2, 4, False), (4, 5, False))
+RELATIVE = [group for group in GROUPS if not group[2]]
+DRAW = np.random.default_rng(1).normal(size=400)
+A, B, C = DRAW[:5], DRAW[5:10], 1e-17 * DRAW[10:15]
+
+
+def made(source, **names):
+    """Return the kernel of a source."""
+    names['compiled'] = lambda function: function
+    exec(source, names)
+    return list(names.values())[-1]
+
+
+def test_stages_have_their_rates_and_their_sums():
+    """Eight stages of two unknowns: unknown by unknown in S, with the rates behind them."""
+    S, p = DRAW.copy(), DRAW[:3]
+    stages = S[:16].reshape(2, 8)
+
+    def rate(numbers, y):
+        return numbers[0] * y[0] + numbers[1] * y[1], numbers[2] * y[0] * y[1]
+    made(collocation._stage_rates(2, 3), rate=rate)(p, S)
+    expected = np.array([p[0] * stages[0] + p[1] * stages[1], p[2] * stages[0] * stages[1]])
+    assert S[16:32].reshape(2, 8) == near(expected, rel=1e-14)
+    assert np.array_equal(np.delete(S, range(16, 32)), np.delete(DRAW, range(16, 32)))
+    before, rates, matrix = S.copy(), S[16:32].reshape(2, 8).copy(), S[40:104].copy()
+    y = 3.0, 4.0
+    made(collocation._spread(2))(S, y, 40)
+    # the matrix stands column by column
+    assert S[:16].reshape(2, 8) == pytest.approx(
+        np.array(y)[:, np.newaxis] + rates @ matrix.reshape(8, 8), abs=1e-14)    # 4e-16
+    assert np.array_equal(S[16:], before[16:])
+    row = DRAW[50:58]
+    found = made(collocation._combined(2, 16))(S, tuple(row))
+    assert found == pytest.approx(rates @ row, abs=1e-14)    # 0
+
+
+def test_a_curve_is_a_sum_of_legendres_polynomials():
+    curve, y = 7, (3.0, 4.0)
+    of = DRAW[curve:curve + 2 * 17].reshape(2, 17)
+    for x in (-1.0, -0.3, 0.0, 0.6, 1.0):
+        expected = y + np.polynomial.legendre.legval(x, of.T)
+        assert made(collocation._along(2, curve))(DRAW, y, x) == near(expected, rel=1e-13)
+    assert made(collocation._end_of_curve(2, curve))(DRAW) == tuple(of[:, -1])
+
+
+def test_a_step_keeps_what_its_sums_lose():
+    """Y + c + h mean, but for the rounding of the increment; a norm tells what is not finite."""
+    s, lost = made(collocation._advanced(5))(A, B, C, 1e-3)
+    for n in range(5):
+        exact = Fraction(A[n]) + Fraction(C[n]) + Fraction(1e-3) * Fraction(B[n])
+        assert abs(Fraction(s[n]) + Fraction(lost[n]) - exact) < 1e-18    # 6e-20
+        assert abs(lost[n]) <= np.spacing(abs(s[n]))
+    s, lost, square = made(power_series._added(5))(A, C, 1e-3 * B)
+    for n in range(5):
+        exact = Fraction(A[n]) + Fraction(C[n]) + Fraction(1e-3 * B[n])
+        assert abs(Fraction(s[n]) + Fraction(lost[n]) - exact) < 1e-18
+    assert square == near(np.dot(s, s), rel=1e-14)
+
+
+def test_errors_count_by_groups_over_what_they_have_met():
+    """Absolute groups count as they are; a group that has not moved yet does not count."""
+    scales = (0.3, 2.0)
+    off = A - 0.7 * B
+    shares = [off[:2] @ off[:2], off[2:4] @ off[2:4] / 0.3, off[4] ** 2 / 2.0]
+    measure = made(collocation._measure(GROUPS))
+    assert measure(A, B, 0.7, scales) == near(sum(shares), rel=1e-14)
+    assert measure(A, B, 0.7, (0.0, 2.0)) == near(shares[0] + shares[2], rel=1e-14)
+    assert made(collocation._by_group(GROUPS))(off, scales) == near(shares, rel=1e-14)
+    measured = made(power_series._measured(GROUPS), PLACES=8)
+    S = np.concatenate((DRAW[:24], off))
+    assert measured(S, 3, scales) == near(sum(shares), rel=1e-14)
+    assert measured(S, 3, (0.3, 0.0)) == near(shares[0] + shares[1], rel=1e-14)
+
+
+@pytest.mark.parametrize('scales', [(1e-9, 1e9), (1e9, 1e-9)])
+@pytest.mark.parametrize('h', [1e-3, 1e3])
+def test_scales_are_the_largest_squares_that_were_met(scales, h):
+    y, moved = ([part[2:4] @ part[2:4], part[4] ** 2] for part in (A, h * B))
+    assert made(collocation._grown(GROUPS))(scales, A) == near(np.maximum(scales, y), rel=1e-14)
+    found = made(collocation._first_scales(GROUPS))(A, B, h)
+    assert found == near(np.maximum(y, moved), rel=1e-14)
+    found = made(power_series._grown(RELATIVE))(scales, A, B, h)
+    assert found == near(np.max([scales, y, moved], axis=0), rel=1e-14)
+
+
+def test_what_a_march_keeps_does_not_overlap():
+    """Stages and rates of all unknowns, three matrices, five numbers, a curve, stages aside."""
+    n = 7
+    places = collocation._places(n)
+    lengths = [('RATES', 8 * n), ('MATRIX', 8 * n), ('PREDICTOR', 64), ('BETWEEN', 64),
+               ('FOR', 64), ('FOR_STEP', 1), ('FOR_BEFORE', 1), ('FOR_POINT', 1), ('TAIL', 1),
+               ('CURVE', 1), ('ASIDE', 17 * n)]
+    at = 0
+    for name, length in lengths:    # each begins where the one before it ends
+        at += length
+        assert places[name] == at
+    assert collocation._end(places) == at + 8 * n
+    assert [places[name] for name in ('SIZE', 'LAST', 'SWEEPS', 'KEPT')] == [
+        n, VALUES + 2 * n, VALUES + 2 * n + 1, VALUES + 2 * n + 2]
+
+
+def test_a_march_begins_with_its_tolerance_or_its_step():
+    """The tolerance is what a second may err; a series is planned a point earlier, to a fourth."""
+    adapts = types.SimpleNamespace(accuracy=1e-9, horizon=50.0, step=None)
+    fixed = types.SimpleNamespace(accuracy=None, horizon=50.0, step=0.02)
+    march = types.SimpleNamespace(WORK=9, ROOM=20, VALUES=VALUES, SIZE=7)
+    for stepped, control in ((adapts, Control(5e-12, 0.0, 0.0)), (fixed, Control(0.0, 0.02, 0.0))):
+        found, point = power_series.begin(stepped, march)
+        assert CONTROL.load(found.tolist()) == near(control, rel=1e-14)
+        assert (len(found), len(point)) == (29, VALUES + 14)
+        assert not found[CONTROL.size:].any()
+    found, point = one_step.begin(fixed, march)
+    assert tuple(found) == Control(0.0, 0.02, 0.0)
+    assert len(point) == VALUES + 14
+
+
+def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
+    """Each Relaxation stands in a part of its own behind what the march keeps."""
+    draw = np.random.default_rng(4)
+    found = [Relaxation(4, *draw.normal(size=(2, 3, 3)), [1.0, 2.0, 3.0]),
+             Relaxation(10, *draw.normal(size=(2, 2, 2)), [4.0, 5.0])]
+    monkeypatch.setattr(collocation, 'stiff_relaxations', lambda scene, size: found)
+    monkeypatch.setattr(collocation, 'swing_rate', lambda scene: 3.0)
+    march = types.SimpleNamespace(WORK=9, SIZE=13, SWING=5, KEPT=40)
+    stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None)
+    control, point = collocation.begin(stepped, march)
+    assert CONTROL.load(control.tolist()) == near(Control(2e-11, 0.0, 0.0), rel=1e-14)
+    assert (control[5], len(point)) == (9.0, 40 + 8 * 13)
+    parts = control[9 + collocation._end(collocation._places(13)):].reshape(2, relaxing.PART)
+    for part, one in zip(parts, found, strict=True):
+        size = len(one.rates) ** 2
+        assert np.array_equal(part[relaxing.INTO:relaxing.INTO + size], one.into.ravel())
+        assert np.array_equal(part[relaxing.BACK:relaxing.BACK + size], one.back.ravel())
+        first = relaxing.DECAY
+        assert part[first:first + len(one.rates)].tolist() == one.rates
+    fixed = types.SimpleNamespace(scene=None, accuracy=None, horizon=50.0, step=0.02)
+    control, _ = collocation.begin(fixed, march)
+    assert CONTROL.load(control.tolist()) == Control(0.0, 0.02, 0.0)
+
+
+@pytest.mark.parametrize('family', [
+    collocation, composition, engine_step, power_series, runge_kutta, scipy_methods])
+def test_a_family_takes_a_wrench_where_its_equations_have_its_numbers(family):
+    scene = parse_scene('scene: a\nbody: {mass: 2, inertia: [0.2, 0.3, 0.4]}\nconstraint: pivot\n'
+                        'effects: [gravity: {g: 9.81}]\ninitial: {}\n')
+    of = family.Equations if family is scipy_methods else family.equations_of
+    held, free = (of(scene, wrench).parameter_count
+                  for wrench in (Wrench(torque=(0.1, 0.2, 0.3)), None))
+    assert (held > free) is family.TAKES_WRENCH
