@@ -8,6 +8,7 @@ goes on.
 """
 
 import math
+import operator
 from typing import NamedTuple
 
 import numpy as np
@@ -65,7 +66,7 @@ class InPairs(NamedTuple):
 
 
 SUMS = layout(InPairs)
-SUMS_SIZE, _SECOND = SUMS.size, SUMS.part('torque').first
+SUMS_SIZE, _LOST, _SECOND = SUMS.size, SUMS.part('of_force').first, SUMS.part('torque').first
 load_push, load_sums, store_sums = layout(Push).load, SUMS.load, SUMS.store
 
 
@@ -122,7 +123,8 @@ class Given(NamedTuple):
     def any_impulse(self) -> bool:
         """Whether the impulses do not cancel."""
         sums = load_sums(self.sums)
-        return any(sums.force) or any(sums.torque)
+        return any(map(operator.add, (*sums.force, *sums.torque),
+                       (*sums.of_force, *sums.of_torque)))
 
 
 @compiled_allocating
@@ -240,7 +242,8 @@ def _apply(p, start, given, after, response):
         response[j] = 0.0
     some = False
     for j in range(3):
-        some = some or given[j] != 0.0 or given[_SECOND + j] != 0.0
+        some = some or given[j] + given[_LOST + j] != 0.0 or (
+            given[_SECOND + j] + given[_SECOND + _LOST + j] != 0.0)
     return not some or apply_impulse(p, after, given[:_SECOND], given[_SECOND:], response)
 
 

@@ -82,6 +82,8 @@ def test_a_state_is_that_of_the_last_span_that_has_begun(whole):
     assert found[:, 0].tolist() == whole and found[:, 1].tolist() == expected
     assert wrenches_at(spans, np.array(whole)) == [f'held {number}' for number in expected]
     assert states_at(spans[:1], np.array(whole))[:, 1].tolist() == [0.0] * len(whole)
+    assert states_at(spans[::3], np.array(whole))[:, 1].tolist() == [
+        0.0 if time < 4.5 else 3.0 for time in whole]
 
 
 def test_only_the_spans_that_reach_beyond_a_time_are_asked_for_events():

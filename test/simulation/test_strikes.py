@@ -61,23 +61,30 @@ def test_a_strike_that_is_late_acts_where_the_motion_goes_on():
 
 
 @pytest.mark.parametrize(('scene', 'later', 'words'), [
-    (coasting_scene((0.0, -8.0)), coasting_scene((2.0, -8.0)), 'would do a work of'),
-    (parse_scene(ROD.format(0.0)), parse_scene(ROD.format(2.0)), 'has a torque about an')])
+    (coasting_scene((0.0, -8.0)), coasting_scene((0.5, -8.0)), 'would do a work of'),
+    (parse_scene(ROD.format(0.0)), parse_scene(ROD.format(0.5)), 'has a torque about an')])
 def test_what_a_body_cannot_take_is_refused_at_the_start_and_ends_a_motion_later(
         scene, later, words, monkeypatch):
     monkeypatch.setattr(strikes, 'LARGEST_WORK', 10.0)    # J; it would be 16 + 32
     with pytest.raises(BadInput, match=f'at 0 s it {words}'):
         spans_until(scene, 1.0)
     first, last = spans_until(later, 2.0)
-    assert last.time == 2.0 and first.solver.state
+    assert last.time == 0.5 and first.solver.state
     assert last.start[5:8].tolist() == later.initial.vector[5:8].tolist()    # it is not struck
     out = np.empty((1, 14))
     for ask in (lambda: last.solver.state(2.0, out[0]), lambda: last.solver.entries(2.0),
                 lambda: last.solver.states(np.array([2.0]), out)):
-        with pytest.raises(Ended, match=f'at 2 s it {words}') as end:
+        with pytest.raises(Ended, match=f'at 0.5 s it {words}') as end:
             ask()
-        assert end.value.time == 2.0
+        assert end.value.time == 0.5
     last.solver.states(np.empty(0), out[:0])    # nothing is asked
-    assert last.solver.events(0.0, 9.0) == [(2.0, 'end', {})]
+    assert last.solver.events(0.0, 9.0) == [(0.5, 'end', {})]
     assert last.solver.allowance(9.0) is None
     assert last.solver.name == 'coasting'
+
+
+def test_the_largest_work_itself_is_taken(monkeypatch):
+    monkeypatch.setattr(strikes, 'LARGEST_WORK', 48.0)    # J: what it is
+    assert len(spans_until(coasting_scene((0.5, -8.0)), 1.0)) == 2
+    monkeypatch.setattr(strikes, 'LARGEST_WORK', 47.999)
+    assert spans_until(coasting_scene((0.5, -8.0)), 1.0)[-1].solver.events(0.0, 9.0)

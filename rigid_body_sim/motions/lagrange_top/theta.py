@@ -127,7 +127,7 @@ def circular_terms(powers, X, kind, orientation, modulus):
     -------
     terms : CircularTerms
     slope : float
-        Rate of the phase of the periodic part over that of 2v, where |S| is largest.
+        Minus the rate of the phase of the periodic part over that of 2v, where |S| is largest.
     """
     q = powers.q
     Y = min(q / X, 1.0) if X > 0.0 else 0.0
