@@ -64,6 +64,28 @@ def test_signals_ask_for_the_end_and_are_as_before_after_it(later, number):
     assert signal.set_wakeup_fd(-1) == -1
 
 
+def test_a_signal_at_the_very_end_does_not_hide_that_it_is_the_end(later, monkeypatch):
+    """Both are in the pipe at once, since the thread that reads it was busy with another one."""
+    busy, ended, write = threading.Event(), threading.Event(), os.write
+
+    def writes(*told):
+        write(*told)
+        ended.set()
+    monkeypatch.setattr(os, 'write', writes)
+    heard = []
+
+    def signalled():
+        busy.set()
+        assert ended.wait(60.0)
+        heard.append(1)
+    with shutdown.signals() as stop:
+        stop.signalled = signalled
+        signal.raise_signal(signal.SIGTERM)
+        assert busy.wait(60.0)
+        signal.raise_signal(signal.SIGTERM)
+    assert heard == [1, 1]
+
+
 def test_under_nohup_the_end_of_the_terminal_is_not_heard(later):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
