@@ -7,6 +7,7 @@ import types
 import kept
 import numpy as np
 import pytest
+from near import near
 from soak import IN_SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -97,6 +98,28 @@ def test_peers_are_asked_for_the_last_attitude_that_they_reach(rate, time):
     record = {'angular_velocity': [0.6 * rate, 0.0, 0.8 * rate], 'states': [
         {'time': one, 'orientation': [0, 0, 0, 1]} for one in (2.0, 50.0, 100.0, 101.0)]}
     assert beside.attitude(None, record).time == time
+
+
+@pytest.mark.parametrize(('time', 'step'), [(2.0, 1e-3), (0.0026, 0.0026 / 3), (1e-4, 1e-4)])
+@pytest.mark.parametrize('control', ['step', 'tolerance'])
+def test_peers_take_steps_of_a_millisecond_or_a_tolerance(time, step, control):
+    """The steps are as long as each other."""
+    record = {'angular_velocity': [1, 2, 2],
+              'states': [{'time': time, 'orientation': [0, 0, 0, 1]}]}
+    made, asked_for = [], []
+
+    def runners(problem, reference):
+        assert problem.duration == time and reference.omega == [(1, 2, 2)]
+        yield types.SimpleNamespace(control=control, make=lambda setting: made.append(setting)
+                                    or types.SimpleNamespace(
+            start=lambda: asked_for.append('start'), to=asked_for.append,
+            state=lambda: (0.0, 0.0, *HALF, 1.0, 2.0, 2.0)))
+    scene = types.SimpleNamespace(
+        name='a', about='b', initial=types.SimpleNamespace(angular_velocity=(1, 2, 2)))
+    found = beside.attitude(scene, record).ask(types.SimpleNamespace(runners=runners))
+    assert found == near(0.2, rel=1e-14)
+    assert made == near([step if control == 'step' else 1e-12], rel=1e-14)
+    assert asked_for == ['start', time]
 
 
 def test_what_a_peer_says_is_told_in_a_few_words():

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The end of a process: by a signal or by itself, once, and soon even if it is busy."""
 
+import io
 import os
 import signal
+import sys
 import threading
 import types
 
@@ -94,6 +96,17 @@ def test_under_nohup_the_end_of_the_terminal_is_not_heard(later):
             assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, signal.SIG_DFL)
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize(('name', 'write'), [('stdout', shutdown.tell), ('stderr', shutdown.say)])
+def test_a_line_is_there_at_once_if_anybody_reads_it(monkeypatch, name, write):
+    read = io.BytesIO()
+    stream = io.TextIOWrapper(read)
+    monkeypatch.setattr(sys, name, stream)
+    write('a line')
+    assert read.getvalue() == b'a line\n'
+    stream.close()
+    write('another one')
 
 
 def test_what_is_to_come_later_keeps_no_process_alive(monkeypatch):
