@@ -256,6 +256,31 @@ def test_what_acts_is_what_the_formula_says(effects, kind):
             assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.parametrize(('effects', 'kind'), [*PLACES, ('wrench', 'free'), ('wrench', 'pivot')])
+def test_what_is_told_of_each_force_is_true_of_it(effects, kind):
+    """Along a line through the space of its arguments the differences of a polynomial end."""
+    scene = scene_of('' if effects == 'wrench' else effects, kind)
+    wrench = Wrench((1.0, -2.0, 3.0), (0.5, 0.7, -0.2), 'body')
+    effect = wrench if effects == 'wrench' else scene.effects[0]
+    begin, way = np.random.default_rng(3).normal(size=(2, 14))
+    binomial = np.array([1, -8, 28, -56, 70, -56, 28, -8, 1])
+    for one in effect.acting(scene.frame, 1.0):
+        kernel, count = function(one.kernel), 14 if one.in_field else 10
+        line = np.array([kernel(*one.values, *(0.1 * begin + step * way)[:count])
+                         for step in range(-4, 5)])
+        ends = np.abs(binomial @ line).max() < 1e-11 * np.abs(line).max()
+        # an expression may be one and need not say so
+        by_hand = one.kernel.startswith('rigid_body_sim.scene.effects.')
+        assert ends or not one.polynomial
+        assert one.polynomial or not ends or not by_hand
+        moved = [kernel(*one.values, *(begin + np.isin(np.arange(14), places))[:count])
+                 for places in ([], range(4, 10), [10])]
+        assert one.of_motion == (moved[1] != moved[0] and one.books != 'heat')
+        assert one.timed if moved[2] != moved[0] else not (one.timed and by_hand)
+        # whose momentum is inside of the body
+        assert one.inner == effects.startswith('rotor')
+
+
 POTENTIALS = ('gravity: {g: 9.81}', 'gravity: {g: [1, 2, -9]}', f'{SPRING}}}',
               f'{SPRING}, length: 0.8}}',
               'gravity_gradient: {mu: 5, position: [2, -1, 2]}',

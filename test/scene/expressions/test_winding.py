@@ -14,7 +14,7 @@ KNOWN = ('k', 1.5), ('half', 0.5)
     '3*t', 'sin(angle)', 'cos(angle/2 + t)', 'tan(2*angle)', 'sin(-angle)', 'sin(3 - angle)',
     'angle - angle', '2*angle - angle*2', '-angle + angle', 'angle/half - 2*angle',
     'sin(k*angle)', 'sin(angle*k)', 'cos(angle/half)', 'cos(angle*(2 - k))', 'sin(angle*(k + 2))',
-    'sin(-k*angle)', 'cos(6/3*angle/4)', 'cos(k*half*angle + 0.75*angle)',
+    'sin(-k*angle)', 'sin(0.25*(2*angle))', 'cos(6/3*angle/4)', 'cos(k*half*angle + 0.75*angle)',
     'exp(sin(angle))', 'sin(angle)*t', 't/(2 + cos(angle))', '2*t*cos(angle)^3',
     'sin(angle + sin(angle))'])
 def test_what_has_the_period_of_two_turns_does_not_jump(text):
