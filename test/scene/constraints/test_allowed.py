@@ -23,14 +23,14 @@ SPEED = np.array([0.5, 2.0, 0.0])    # of the path, which begins at (0.1, 0, 0.3
 
 
 def refused(mechanism, turn=UNIT, omega=OMEGA, place=POSITION, velocity=(0.0, 0.0, 0.0), axis=None,
-            path=None, keys=('position',)):
+            path=None, keys=('position',), position=POSITION):
     """Return what is said of a state, or '' if it is allowed."""
     constraint = types.SimpleNamespace(
         kind='own', mechanism=mechanism, axis=axis, path=path, point=lambda body: AT.tolist(),
         holds_a_point=mechanism in (Mechanism.POINT, Mechanism.AXIS), INITIAL=dict.fromkeys(keys))
     state = State.of(0.0, turn, omega, place, velocity)
     try:
-        refuse_forbidden(state, constraint, types.SimpleNamespace(position=POSITION), None, 'here')
+        refuse_forbidden(state, constraint, types.SimpleNamespace(position=position), None, 'here')
     except BadInput as refusal:
         return str(refusal)
     return ''
@@ -83,3 +83,18 @@ def test_a_point_that_is_held_is_where_it_is_held_and_moves_with_it(path, start,
         assert 'its held point at' in found(velocity=wrong) and 'm/s' in found(velocity=wrong)
         assert 'the place that position says' in found(place=wrong)
         assert found(place=wrong, keys=()) == ''    # of a place of its own nothing is known
+
+
+@pytest.mark.parametrize('size', [1e6, 1e-6])
+def test_rounding_is_a_share_of_what_is_rounded(size):
+    """The rounding of the arm, 1e-16 m, is that share where nothing is far away."""
+    place = [size * x for x in POSITION] if size > 1.0 else POSITION
+    given = held(size * OMEGA, np.array(place))
+    off = given | {'velocity': given['velocity'] + 1e-14 * size}
+    assert refused(Mechanism.POINT, position=place, **off) == ''
+    off = given | {'velocity': given['velocity'] + 1e-10 * size}
+    assert 'm/s' in refused(Mechanism.POINT, position=place, **off)
+    off = given | {'place': given['place'] + 1e-14 * max(size, 1.0)}
+    assert refused(Mechanism.POINT, position=place, **off) == ''
+    off = given | {'place': given['place'] + 1e-10 * max(size, 1.0)}
+    assert 'position says' in refused(Mechanism.POINT, position=place, **off)

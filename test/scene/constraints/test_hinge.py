@@ -39,6 +39,12 @@ def test_a_body_starts_at_its_angle_from_the_orientation_given_and_turns_about_t
     assert (Rotation.from_quat(frame.hinge.zero).inv() * zero).magnitude() < 1e-14
 
 
+def test_without_them_the_angle_is_zero_the_body_at_rest_and_its_origin_on_the_axis():
+    state = scene_of('axis: [4, -2, 4]', 'euler: [0.5, 0, 0]').initial
+    assert state.orientation == near([np.sin(0.25), 0.0, 0.0, np.cos(0.25)], rel=1e-15)
+    assert not state.vector[5:].any()
+
+
 @pytest.mark.parametrize('distance', [0.3, -0.2])
 @pytest.mark.parametrize('axis', [[1, 0, 0], [0, 3, 4], [1, 2, -2]])
 def test_a_body_hangs_by_a_distance_from_its_centre_of_mass(distance, axis):

@@ -7,7 +7,7 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.constraints.pivot import Pivot
+from rigid_body_sim.scene.constraints.pivot import DisplacedPivot, Pivot
 from rigid_body_sim.scene.scene import parse_scene
 
 CENTER, AT = np.array([0.1, -0.2, 0.3]), np.array([0.4, 0.5, -0.1])
@@ -43,6 +43,8 @@ def test_a_body_starts_with_its_point_where_the_pivot_is(pivot, at, moved, veloc
 
 def test_a_pivot_at_the_origin_is_one_that_has_closed_forms():
     assert scene_of('at: [0, 0, 0]').constraint == Pivot()
+    for at in np.diag([0.3, -0.2, 0.1]).tolist():
+        assert scene_of(f'at: {at}').constraint == DisplacedPivot(tuple(at))
 
 
 @pytest.mark.parametrize(('motion', 'said'), [
