@@ -63,3 +63,10 @@ def test_a_rod_does_not_spin_about_itself(pivot):
     assert scene_of(pivot, 'angular_velocity: [1, 2, 0]', rod).initial.angular_velocity[1] == 2.0
     with pytest.raises(BadInput, match='whose moment is zero'):
         scene_of(pivot, 'angular_velocity: [1, 2, 0.1]', rod)
+
+
+@pytest.mark.parametrize('far', np.diag([1e75] * 3).tolist())
+@pytest.mark.parametrize('pivot', ['', f'{MOTION}, '])
+def test_a_point_so_far_that_squares_of_its_tensor_are_no_doubles_is_refused(far, pivot):
+    with pytest.raises(BadInput, match=r'pivot: a moment of inertia of .*e\+150'):
+        scene_of(f'{pivot}at: {far}')
