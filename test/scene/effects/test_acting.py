@@ -13,6 +13,8 @@ import pytest
 from near import near
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.gravity import Gravity
 from rigid_body_sim.scene.effects.internal_dissipation import ENDED
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
@@ -105,8 +107,8 @@ def weight(now, kind):
     return at_point(now, CENTER, [0.0, 0.0, -9.81 * MASS], kind)
 
 
-def field(now, kind):
-    return at_point(now, CENTER, MASS * np.array([1.0, 2.0, -9.0]), kind)
+def field(now, kind, g=(1.0, 2.0, -9.0)):
+    return at_point(now, CENTER, MASS * np.array(g), kind)
 
 
 def rotor(now, kind, momentum=1.5, motor=0.0):
@@ -208,9 +210,12 @@ EVERYWHERE, NO_AXIS, FREE = ('free', 'pivot', 'hinge'), ('free', 'pivot'), ('fre
 CASES = {
     'gravity: {g: 9.81}': (weight, EVERYWHERE),
     'gravity: {g: [1, 2, -9]}': (field, EVERYWHERE),
+    **{f'gravity: {{g: {g}}}': (lambda now, kind, g=g: field(now, kind, g), FREE)
+       for g in ([0, 0, 9], [0, 2, -9], [1, 0, -9], [0, 0, -0.5])},
     ROTOR: (rotor, EVERYWHERE),
     'rotor: {axis: [4, -2, 4], inertia: 0.5, rate: 3, torque: 0.7}': (
         lambda now, kind: rotor(now, kind, 1.5, 0.7), EVERYWHERE),
+    'rotor: {axis: [4, -2, 4], inertia: 0.5, rate: 3}': (rotor, FREE),
     'dry_friction: {torque: 0.4}': (dry_friction, ('hinge',)),
     'drag: {linear: 0.7}': (linear_drag, EVERYWHERE),
     'drag: {angular: 0.3}': (angular_drag, EVERYWHERE),
@@ -409,3 +414,10 @@ def test_inner_parts_turn_the_axes_until_a_wobble_is_too_small_to_show(
             assert abs(one) <= 1e-5 * abs(full)
         else:
             assert one == near(full, rel=1e-5)
+
+
+@pytest.mark.parametrize('g', ['[0, 0, -1.6]', '1.6'])
+def test_a_field_along_minus_z_is_one_that_has_closed_forms(g):
+    assert scene_of(f'gravity: {{g: {g}}}', 'free').effects == (Gravity(1.6),)
+    with pytest.raises(BadInput, match=r'gravity\.g: got -0\.1'):
+        scene_of('gravity: {g: -0.1}', 'free')
