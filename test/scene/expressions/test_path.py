@@ -13,9 +13,9 @@ def test_place_velocity_and_acceleration_of_a_path():
     trees = tuple(read(text, {'t', 'A'}, 'here') for text in ('A*cos(9*t)', 't^3 - 2*t', '5'))
     place, velocity, acceleration = path.along(path.path(trees, (('A', 0.2),)), 0.7)
     cosine, sine = math.cos(6.3), math.sin(6.3)
-    assert place == pytest.approx((0.2 * cosine, 0.343 - 1.4, 5.0), rel=1e-14)
-    assert velocity == pytest.approx((-1.8 * sine, 3 * 0.49 - 2, 0.0), rel=1e-14)
-    assert acceleration == pytest.approx((-16.2 * cosine, 4.2, 0.0), rel=1e-14)
+    assert place == pytest.approx((0.2 * cosine, 0.343 - 1.4, 5.0), rel=1e-14, abs=1e-14)
+    assert velocity == pytest.approx((-1.8 * sine, 3 * 0.49 - 2, 0.0), rel=1e-14, abs=1e-14)
+    assert acceleration == pytest.approx((-16.2 * cosine, 4.2, 0.0), rel=1e-14, abs=1e-14)
 
 
 @pytest.mark.parametrize(('texts', 'found'), [
