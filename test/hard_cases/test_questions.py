@@ -7,8 +7,10 @@ import types
 import kept
 import numpy as np
 import pytest
+from near import near
 from soak import IN_SOAK
 
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -74,6 +76,67 @@ def test_a_peer_that_finds_nothing_says_so():
     assert asked['8 1e-300 off the smallest axis'].ask(still) == 'never leaves'
     lost = peer(wrong=lambda time, state: state * (math.nan if time > 0.5 else 1.0))
     assert math.isnan(asked['8 stiff: c dt = 1'].ask(lost))
+
+
+HALF = math.sin(0.1), math.cos(0.1)
+
+
+@pytest.mark.parametrize(('found', 'expected', 'angle'), [
+    ((0.0, 0.0, *HALF), '0 0 0 1', 0.2), ((0.0, 0.0, *HALF), '0 0 0 -3', 0.2),
+    ((2.0 * HALF[0], 0.0, 0.0, 2.0 * HALF[1]), '0 0 0 1', 0.2),
+    ((1.0, 0.0, 0.0, 0.0), '0 0 0 1', math.pi), ((0.0, 0.0, 0.0, 1.0), '0 0 0 1', 0.0),
+    ((0.0, 0.0, 0.0, 0.0), '0 0 0 1', math.inf), ((math.nan, 0, 0, 1), '0 0 0 1', math.inf)])
+def test_the_angle_between_attitudes_is_that_of_the_turn_from_one_to_the_other(
+        found, expected, angle):
+    assert beside.angle(found, expected.split()) == pytest.approx(angle, rel=1e-14, abs=1e-30)
+
+
+@pytest.mark.parametrize(('rate', 'time'), [(50.0, 100.0), (101.0, 50.0), (5000.0, 2.0),
+                                            (1e9, 2.0)])
+def test_peers_are_asked_for_the_last_attitude_that_they_reach(rate, time):
+    """Up to 100 s and to 10,000 rad, or for the first one."""
+    record = {'angular_velocity': [0.6 * rate, 0.0, 0.8 * rate], 'states': [
+        {'time': one, 'orientation': [0, 0, 0, 1]} for one in (2.0, 50.0, 100.0, 101.0)]}
+    assert beside.attitude(None, record).time == time
+
+
+@pytest.mark.parametrize(('time', 'step'), [(2.0, 1e-3), (0.0026, 0.0026 / 3), (1e-4, 1e-4)])
+@pytest.mark.parametrize('control', ['step', 'tolerance'])
+def test_peers_take_steps_of_a_millisecond_or_a_tolerance(time, step, control):
+    """The steps are as long as each other."""
+    record = {'angular_velocity': [1, 2, 2],
+              'states': [{'time': time, 'orientation': [0, 0, 0, 1]}]}
+    made, asked_for = [], []
+
+    def runners(problem, reference):
+        assert problem.duration == time and reference.omega == [(1, 2, 2)]
+        yield types.SimpleNamespace(control=control, make=lambda setting: made.append(setting)
+                                    or types.SimpleNamespace(
+            start=lambda: asked_for.append('start'), to=asked_for.append,
+            state=lambda: (0.0, 0.0, *HALF, 1.0, 2.0, 2.0)))
+    scene = types.SimpleNamespace(
+        name='a', about='b', initial=types.SimpleNamespace(angular_velocity=(1, 2, 2)))
+    found = beside.attitude(scene, record).ask(types.SimpleNamespace(runners=runners))
+    assert found == near(0.2, rel=1e-14)
+    assert made == near([step if control == 'step' else 1e-12], rel=1e-14)
+    assert asked_for == ['start', time]
+
+
+def test_what_a_peer_says_is_told_in_a_few_words():
+    pytest.importorskip('numba')
+
+    def asked(answer):
+        def ask(module):
+            if isinstance(answer, Exception):
+                raise answer
+            return answer
+        return beside._asked(None, types.SimpleNamespace(ask=ask))
+    assert asked(0.5) == 0.5 and asked('never leaves') == 'never leaves'
+    assert asked(math.nan) == asked(math.inf) == 'NaN in silence'
+    assert asked(BadInput('scene', 'a', 'b')) == 'refuses: scene: a; b'
+    assert asked(NotConverged('no  step\nis small enough', 0.0)).startswith(
+        'fails: no step is small')
+    assert asked(KeyError(91 * 'x')) == f"fails: KeyError: '{89 * 'x'}"
 
 
 SHOTS = [name for name in ASKED if name[0] == '7']

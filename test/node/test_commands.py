@@ -10,7 +10,7 @@ import pytest
 
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.node import commands
-from rigid_body_sim.node.commands import MOST_HEADS, Commands, decode
+from rigid_body_sim.node.commands import MOST_HEADS, Commands, TakenElsewhere, decode
 from rigid_body_sim.simulation.command_rows import BODY, HOLD, IMPULSE, TOPICS, WORLD
 
 NUMBERS = (1.0, -2.0, 3.0, -4.0, 5.0, 1e-300)
@@ -65,6 +65,29 @@ def test_rows_are_kind_axes_and_numbers_in_the_order_of_messages(queue):
     assert queue.waiting == 0
     queue._receive(HOLD, [message('body')])    # its head is remembered by now
     assert queue.collect().tolist() == [[HOLD, BODY, *NUMBERS]]
+
+
+def test_a_message_whose_head_is_known_is_not_looked_into(queue):
+    """Senders hardly ever change more than the stamp and the numbers."""
+    for frame in ('', 'body'):
+        queue._receive(HOLD, [message(frame)])
+    queue._examine = None
+    for frame, axes in (('', WORLD), ('body', BODY)):
+        data = message(frame)
+        queue._receive(HOLD, [data[:4] + bytes(8) + data[12:-8] + struct.pack('<d', 5.0)])
+        assert queue.collect()[-1].tolist() == [HOLD, axes, *NUMBERS[:5], 5.0]
+
+
+@pytest.mark.parametrize('silent', [True, False])
+def test_messages_are_taken_when_the_bell_has_rung(queue, silent):
+    looked = []
+    queue._bell = types.SimpleNamespace(silent=lambda: silent)
+    queue.look = lambda: looked.append(1)
+    queue.take()
+    assert looked == [1] * (not silent)
+    # and never by the executor
+    assert not TakenElsewhere().can_execute(None)
+    assert not TakenElsewhere().beginning_execution(None)
 
 
 def test_what_is_no_command_is_refused_with_what_would_be_right(queue):

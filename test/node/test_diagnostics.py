@@ -17,7 +17,8 @@ OK, WARN, ERROR = (
     level[0] for level in (DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR))
 LATE = {'p50': 1e-4, 'p99': 1e-3, 'max': 2e-3}
 BOUNDS = {'lateness_warn': 0.002, 'lateness_error': 0.1, 'prediction_warn': 1e-6,
-          'prediction_error': 1e-2, 'energy_residual_warn': 1e-11, 'energy_residual_error': 1e-6}
+          'prediction_error': 1e-2, 'energy_residual_warn': 1e-11, 'energy_residual_error': 1e-6,
+          'momentum_residual_warn': 1e-11, 'momentum_residual_error': 1e-6}
 
 
 class Settings(types.SimpleNamespace):
@@ -90,6 +91,42 @@ def test_the_rate_is_that_of_the_ticks_since_the_last_one(made):
     assert (values['tick'], values['rate'], values['skipped']) == ('7', '100', '3')
     made._ticker.paused = True
     assert told(made._timing())[1] == 'paused'
+
+
+def test_all_ticks_so_far_make_the_first_rate(made):
+    made._ticker.latest = (20, 200_000_000)
+    assert float(told(made._timing())[2]['achieved_rate']) == near(100.0, rel=1e-15)
+
+
+FORECAST = {'expected_error': '1e-09', 'met_until': '50'}
+UNKNOWN = dict.fromkeys(FORECAST, 'unknown since the command at t = 1.5 s')
+
+
+@pytest.mark.parametrize(('error', 'missed', 'departed', 'level', 'message', 'method'), [
+    (0.0, '', None, OK, 'energy and angular momentum balance', FORECAST),
+    (0.0, 'it is not met', None, WARN, 'it is not met', FORECAST),
+    (-2e-11, 'it is not met', None, WARN, 'momentum residual 2e-11', FORECAST),
+    (2e-6, '', None, ERROR, 'momentum residual 2e-06', FORECAST),
+    # what was foreseen without the command
+    (0.0, '', 1.5, OK, 'energy and angular momentum balance', UNKNOWN),
+    # no trial has foreseen anything
+    (0.0, '', 1.5, OK, 'energy and angular momentum balance', None)])
+def test_the_ledger_tells_its_residuals_and_how_good_the_method_is(
+        error, missed, departed, level, message, method, made):
+    made._session.balance = {'tick': 7, 'energy_residual': -1e-12, 'momentum_residual': error}
+    settled = types.SimpleNamespace(forecast=types.SimpleNamespace(error=1e-9, met_until=50.0))
+    simulation = made._session.simulation
+    simulation.missed, simulation.departed, simulation.method = missed, departed, 'taylor'
+    simulation.choice = types.SimpleNamespace(
+        method='auto', horizon=100.0, tolerance=None, settled=settled if method else None)
+    found = told(made._ledger())
+    assert found[:2] == (level, message)
+    # what is not known is not told
+    assert found[2] == {'tick': '7', 'energy_residual': f'{-1e-12:.17g}',
+                        'momentum_residual': f'{error:.17g}', 'method': 'taylor',
+                        'horizon': '100'} | {
+        name: value if departed else f'{float(value):.17g}'
+        for name, value in (method or {}).items()}
 
 
 @pytest.mark.parametrize(('late', 'overruns', 'slipped', 'level', 'message'), [

@@ -16,6 +16,8 @@ from std_srvs.srv import Trigger
 from rigid_body_sim.analysis.resimulate import resimulate
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import journal
+from rigid_body_sim.recording.command_messages import CommandTopics
+from rigid_body_sim.recording.compression import DEFAULT
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -189,3 +191,72 @@ def test_a_name_that_was_asked_for_is_numbered_only_after_recordings_of_this_nod
 def test_a_name_is_one_word_of_a_path(tmp_path, name):
     with pytest.raises(BadInput, match=r'parameter recording\.name'):
         journal._free_path(NODE, Chosen(tmp_path, name), 'racket')
+
+
+def begun(monkeypatch, folder, name, full, refused, asked='auto'):
+    """Begin a recording whose recorder is refused so often; return the paths tried, and the rest.
+
+    Another recording takes the name of each that is refused, unless the disk is full.
+    """
+    tried = []
+
+    def recorder(path, ticking, others, topic, told, *options):
+        tried.append((path, others, options))
+        if len(tried) <= refused:
+            if not full:
+                path.mkdir(exist_ok=True)
+            raise BadInput(str(path), 'exists', 'another name')
+        return types.SimpleNamespace(tick=None, status=lambda: 'as it began')
+    monkeypatch.setattr(journal, 'Recorder', recorder)
+    monkeypatch.setattr(journal.about, 'about', lambda *_: {})
+    node = types.SimpleNamespace(
+        get_fully_qualified_name=lambda: '/left/sim', get_namespace=lambda: '/left',
+        resolve_topic_name=lambda name: f'/left/{name}')
+    publishing = types.SimpleNamespace(
+        others=list, every_tick=list, names=list,
+        messages=types.SimpleNamespace(ticking=types.SimpleNamespace(sizes=())))
+    settings = Chosen(folder, name)
+    settings |= {'recording.compression': asked, 'recording.split_bytes': 7.0,
+                 'recording.split_seconds': 3.0}
+    settings.values = {}
+    try:
+        found = journal.Journal(
+            node, settings, types.SimpleNamespace(scene=types.SimpleNamespace(name='racket')),
+            publishing, types.SimpleNamespace(world='world', body='body'))
+    except BadInput:
+        return tried, None, settings.recordings
+    assert found.status == 'as it began'
+    return tried, found.path, settings.recordings
+
+
+@pytest.mark.parametrize(('name', 'full', 'refused', 'tries', 'begins'), [
+    ('', False, 0, 1, True), ('', False, 1, 2, True), ('', False, 4, 5, True),
+    ('', False, 5, 5, False), ('', True, 1, 1, False), ('run', False, 1, 1, False),
+    ('run', False, 0, 1, True)])
+def test_a_name_that_another_recording_took_meanwhile_is_left_to_it(
+        monkeypatch, tmp_path, name, full, refused, tries, begins):
+    """Five names are tried, unless the user gave the name or there is another reason."""
+    tried, path, recordings = begun(monkeypatch, tmp_path, name, full, refused)
+    assert len({path for path, *_ in tried}) == len(tried) == tries
+    assert (path, recordings) == ((tried[-1][0], {tried[-1][0]}) if begins else (None, set()))
+
+
+@pytest.mark.parametrize(('asked', 'compression'), [('auto', DEFAULT), ('lz4', 'lz4')])
+def test_a_recording_is_begun_as_it_was_asked_for(monkeypatch, tmp_path, asked, compression):
+    [(_, others, options)], *_ = begun(monkeypatch, tmp_path, '', False, 0, asked)
+    assert options[:3] == (compression, 7.0, 3.0)
+    # by the numbers of command_rows.py: impulse, then wrench; world, then body
+    assert options[3] == CommandTopics(
+        ('/left/cmd_impulse', '/left/cmd_wrench'), ('world', 'body'))
+    assert {topic.name for topic in others} == set(options[3].topics)
+
+
+def test_the_full_state_is_wanted_no_more_when_it_is_there(monkeypatch):
+    noted, one = [], object.__new__(journal.Journal)
+    one._recorder = types.SimpleNamespace(state_wanted=True, journal=lambda kind, stamp, now,
+                                          **values: noted.append((kind, stamp, values)))
+    monkeypatch.setattr(journal.about, 'state_entry', lambda *told: {'told': told})
+    simulation = types.SimpleNamespace(tick=3)
+    one.state(simulation, 70)
+    assert noted == [('state', 70, {'told': (3, 70, simulation)})]
+    assert one._recorder.state_wanted is False

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameter overrides: the last one of a name wins, whatever its type and wherever it stands."""
 
+import pathlib
+
 import pytest
 import rclpy
 import yaml
@@ -149,6 +151,39 @@ def test_the_node_takes_its_own_dump(start):
 def test_what_is_not_understood_is_left_to_rcl(arguments):
     with overrides.settled(arguments) as (settled, shared):
         assert (settled, shared) == (arguments, frozenset())
+
+
+SHARED = """
+/**: {ros__parameters: {rate: 7, recording: {name: 1e3, split_bytes: 1e6}}}
+left/: {n: {ros__parameters: {step: 1}}}
+---
+ros__parameters: {rate: 8}
+"""
+EVERY = {'rate': 8, 'recording.name': '1e3', 'recording.split_bytes': '1e6'}
+
+
+@pytest.mark.parametrize(('arguments', 'rest', 'merged', 'shared'), [
+    (['-p', 'rate:=5'], ['--ros-args'], {'/**': {'rate': 5}}, set()),
+    (['-r', 'x:=y', '--param', 'n:step:=1', '-p', '/m:step:=2', '--', '-p', 'a:=b'],
+     ['--ros-args', '-r', 'x:=y', '--', '-p', 'a:=b'], {'/n': {'step': 1}, '/m': {'step': 2}},
+     set()),
+    (['--params-file', 'FILE', '-p', 'rate:=9'], ['--ros-args'],
+     {'/**': EVERY | {'rate': 9}, '/left/n': {'step': 1}},
+     {'recording.name', 'recording.split_bytes'}),
+    (['-p', 'rate:=9', '--params-file', 'FILE'], ['--ros-args'],
+     {'/**': EVERY, '/left/n': {'step': 1}}, set(EVERY))])
+def test_arguments_become_one_file_in_their_order(tmp_path, arguments, rest, merged, shared):
+    path = tmp_path / 'shared.yaml'
+    path.write_text(SHARED)
+    arguments = ['a', '--ros-args', *(str(path) if one == 'FILE' else one for one in arguments)]
+    with overrides.settled(arguments) as (settled, of_any):
+        text = pathlib.Path(settled[-1]).read_text(encoding='utf-8')
+        assert settled[:-1] == ['a', *rest, '--ros-args', '--params-file']
+    assert yaml.safe_load(text) == {
+        node: {'ros__parameters': values} for node, values in merged.items()}
+    assert of_any == shared
+    # to rcl 1e3 is a number, unless the parameter is a text
+    assert text.count("'1e3'") == text.count('1e3') and "'1e6'" not in text
 
 
 @pytest.mark.parametrize('text', ['', '- 1', 'a: [', 'a: {ros__parameters: 3}', '3', '[a]: 1'])

@@ -205,6 +205,15 @@ def test_bad_input_is_one_line(recording, tmp_path, monkeypatch, capfd):
         assert ended.value.code == 2 and said in error and error.count('\n') == 1, error
 
 
+def test_what_is_for_ros_is_left_to_it(tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(replay, 'leave', sys.exit)
+    monkeypatch.setattr(sys, 'argv', ['replay', str(tmp_path / 'missing'), '--ros-args', '-r',
+                                      '__node:=again'])
+    with pytest.raises(SystemExit):
+        replay.main()
+    assert 'recover' in capfd.readouterr().err    # so the arguments before it were taken
+
+
 def opened(monkeypatch, *arguments, count=1, length=2.5):
     """Open a recording that lasts so long (s), as the options of a command line say."""
     monkeypatch.setattr(replay, 'Recording', lambda path: types.SimpleNamespace(
@@ -221,7 +230,8 @@ def test_what_fits_a_recording_is_played(monkeypatch, arguments):
 
 @pytest.mark.parametrize(('arguments', 'said'), [
     (('--rate', '1.1e6'), 'got 1.1e.06; a number above 0, up to 1e.06'),
-    (('--rate', '-1'), '--rate: got -1'), (('--rate', 'inf'), '--rate: got inf'),
+    (('--rate', '-1'), '--rate: got -1'), (('--rate', '0'), '--rate: got 0'),
+    (('--rate', 'inf'), '--rate: got inf'),
     (('--start', '-0.1'), 'got -0.1; from 0 to 2.5, the length'),
     (('--start', 'nan'), '--start: got nan'), (('--start', '2.501'), '--start: got 2.501'),
     (('--loop', '--start', '2.5'), 'there is only one instant')])

@@ -6,11 +6,13 @@ import types
 import numpy as np
 import pytest
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages.state_topics import Frames, chosen, scene_messages
 from rigid_body_sim.node.journal import NoJournal
 from rigid_body_sim.node.rehearsal import _Nowhere, _Queue
 from rigid_body_sim.realtime import session as module
 from rigid_body_sim.realtime.session import Session
+from rigid_body_sim.simulation.admission import Refusal
 from rigid_body_sim.simulation.command_rows import HOLD, IMPULSE, ZERO, row_of
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -22,7 +24,7 @@ class Publishers(_Nowhere):
 
     def __init__(self, messages):
         super().__init__(messages)
-        self.ticks, self.display, self.events = [], [], []
+        self.ticks, self.display, self.events, self.scenes = [], [], [], []
 
     def tick(self, messages):
         self.ticks.append(b''.join(messages))
@@ -34,6 +36,10 @@ class Publishers(_Nowhere):
     def event(self, level, name, message, values):
         self.events.append((name, values['tick'], values))
         return super().event(level, name, message, values)
+
+    def scene(self, scene):
+        self.scenes.append(len(self.ticks))
+        return super().scene(scene)
 
 
 def begun(rate=100.0, duration=0.0, timeout=0.0, publish=(), display=30.0):
@@ -123,6 +129,64 @@ def test_without_a_time_limit_a_wrench_is_held():
     session._commands.put(row_of(HOLD, ZERO, [0.1, 0.0, 0.0], 'body'))
     run(session, 30)
     assert session.simulation.wrench and publishing.events == []
+
+
+@pytest.mark.parametrize(('keep', 'held', 'events', 'scenes'), [
+    (True, 3, [('command timed out', 13)], [0]), (False, 0, [], [0, 10])])
+def test_at_another_rate_time_goes_on_from_the_instant_of_its_tick(keep, held, events, scenes):
+    """Here at tick 10, 0.1 s after the start; with another scene what was held ends."""
+    session, publishing, _ = begun(duration=0.3, timeout=0.05, publish=['tf'])
+    run(session, 7)
+    session._commands.put(row_of(HOLD, ZERO, [0.1, 0.0, 0.0], 'body'))
+    run(session, 9)
+    other, wrenches = Simulation('tennis_racket', rate=50.0), []
+    session.request(lambda session: session.switch(other, publishing.messages, keep))
+    while not session.finished:
+        session.run_tick(True)
+        wrenches.append(bool(session.simulation.wrench))
+    assert (session.next_tick, session.stamp - 7) == (21, 320_000_000)
+    # the display, at 30 Hz, of ticks at 50 Hz
+    assert publishing.display == [0, 4, 7, 10, 12, 14, 15, 17, 19, 20]
+    assert wrenches == [True] * held + [False] * (11 - held)
+    assert [event[:2] for event in publishing.events] == events
+    assert publishing.scenes == scenes
+
+
+def test_what_is_refused_is_told_and_the_rest_takes_effect():
+    session, _, _ = begun(timeout=0.05)
+    refused, noted = [], []
+    session._commands.refuse = lambda *told: refused.append(told)
+    session._journal.commands = lambda tick, stamp, rows: noted.append((tick, rows.tolist()))
+    good = row_of(IMPULSE, ZERO, [0.1, 0.0, 0.0], 'body')
+    run(session, 2)
+    session._commands.put(np.concatenate([row_of(kind, ZERO, [np.nan, 0.0, 0.0], 'body')
+                                          for kind in (IMPULSE, HOLD)] + [good]))
+    run(session, 3)
+    assert noted == [(3, good.tolist())] and session._commands.applied == 1
+    # a valid command is shown beside the numbers
+    assert [(topic, reason, remedy) for topic, reason, _, remedy in refused] == [
+        ('cmd_impulse', 'not finite', ''), ('cmd_wrench', 'not finite', '')]
+    assert refused[0][2].startswith('force [0.0, 0.0, 0.0], torque [nan')
+    session.simulation.command = lambda rows: [Refusal(0, 'no', BadInput('x', 'got 1', '2'))]
+    session._commands.put(good)
+    run(session, 20)
+    assert refused[2:] == [('cmd_impulse', 'no', '1', '2')]
+    assert len(noted) == 1
+
+
+def test_a_release_that_is_refused_is_tried_again_at_the_next_tick():
+    session, publishing, _ = begun(timeout=0.05)
+    session._commands.put(row_of(HOLD, ZERO, [0.1, 0.0, 0.0], 'body'))
+    run(session, 4)
+    command, tries = session.simulation.command, []
+
+    def refuses_twice(rows):
+        tries.append(session.next_tick)
+        return [Refusal(0, 'no', BadInput('x', 'got 1', '2'))] if len(tries) < 3 else command(rows)
+    session.simulation.command = refuses_twice
+    run(session, 9)
+    assert tries == [5, 6, 7]
+    assert [event[:2] for event in publishing.events] == [('command timed out', 7)]
 
 
 def test_what_has_a_rate_of_its_own_is_published_at_the_first_tick_at_or_after_its_time():

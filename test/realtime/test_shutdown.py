@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The end of a process: by a signal or by itself, once, and soon even if it is busy."""
 
+import io
 import os
 import signal
+import sys
 import threading
 import types
 
@@ -64,6 +66,28 @@ def test_signals_ask_for_the_end_and_are_as_before_after_it(later, number):
     assert signal.set_wakeup_fd(-1) == -1
 
 
+def test_a_signal_at_the_very_end_does_not_hide_that_it_is_the_end(later, monkeypatch):
+    """Both are in the pipe at once, since the thread that reads it was busy with another one."""
+    busy, ended, write = threading.Event(), threading.Event(), os.write
+
+    def writes(*told):
+        write(*told)
+        ended.set()
+    monkeypatch.setattr(os, 'write', writes)
+    heard = []
+
+    def signalled():
+        busy.set()
+        assert ended.wait(60.0)
+        heard.append(1)
+    with shutdown.signals() as stop:
+        stop.signalled = signalled
+        signal.raise_signal(signal.SIGTERM)
+        assert busy.wait(60.0)
+        signal.raise_signal(signal.SIGTERM)
+    assert heard == [1, 1]
+
+
 def test_under_nohup_the_end_of_the_terminal_is_not_heard(later):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
@@ -72,6 +96,17 @@ def test_under_nohup_the_end_of_the_terminal_is_not_heard(later):
             assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, signal.SIG_DFL)
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize(('name', 'write'), [('stdout', shutdown.tell), ('stderr', shutdown.say)])
+def test_a_line_is_there_at_once_if_anybody_reads_it(monkeypatch, name, write):
+    read = io.BytesIO()
+    stream = io.TextIOWrapper(read)
+    monkeypatch.setattr(sys, name, stream)
+    write('a line')
+    assert read.getvalue() == b'a line\n'
+    stream.close()
+    write('another one')
 
 
 def test_what_is_to_come_later_keeps_no_process_alive(monkeypatch):

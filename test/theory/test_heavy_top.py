@@ -196,6 +196,17 @@ def test_period_and_mean_precession_of_a_nutation(beta, P_alpha, P_gamma):
     assert theory.mean_precession(*top) == near(float(turned / half), 5e-6)
 
 
+def test_a_top_knows_no_axis_across_its_own():
+    omega, up = np.array([0.4, -1.3, 20.0]), np.array([0.36, 0.48, 0.8])
+    for angle in (0.7, 2.0):
+        turn = np.array([[np.cos(angle), -np.sin(angle), 0.0],
+                         [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]])
+        for of in (theory.time_between_turning_points, theory.mean_precession):
+            # measured: 1e-15
+            assert of(turn @ omega, turn @ up, I1, I3, MGL) == near(
+                of(omega, up, I1, I3, MGL), 1e-12)
+
+
 def test_sleeping_top_expansion():
     """V_eff about 0: stiffness by differentiation, and the quartic term at the threshold.
 

@@ -10,8 +10,12 @@ import typing
 
 import numpy as np
 import pytest
+from near import near
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.gravity import Gravity
+from rigid_body_sim.scene.effects.internal_dissipation import ENDED
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -103,6 +107,20 @@ def weight(now, kind):
     return at_point(now, CENTER, [0.0, 0.0, -9.81 * MASS], kind)
 
 
+def field(now, kind, g=(1.0, 2.0, -9.0)):
+    return at_point(now, CENTER, MASS * np.array(g), kind)
+
+
+def rotor(now, kind, momentum=1.5, motor=0.0):
+    axis, omega = now.turn.apply([2.0, -1.0, 2.0]) / 3.0, now.turn.apply(now.omega)
+    return np.zeros(3), -(momentum + motor * now.t) * np.cross(omega, axis) - motor * axis
+
+
+def dry_friction(now, kind):
+    axis = np.array([1.0, 2.0, 2.0]) / 3.0
+    return np.zeros(3), -0.4 * np.sign(axis @ now.omega) * now.turn.apply(axis)
+
+
 def linear_drag(now, kind):
     return at_point(now, CENTER, -0.7 * now.at(CENTER)[1], kind)
 
@@ -187,9 +205,18 @@ AS_NUMBERS = (f'drag: {{linear: {np.diag([0.7] * 3).tolist()}, '
               f'angular: {np.diag([0.3] * 3).tolist()}}}')
 HERE = 'at: [0.4, -0.1, 0.7]'
 SPRING = 'spring: {at: [0.4, -0.1, 0.7], anchor: [1, 0.5, -2], stiffness: 3'
+ROTOR = 'rotor: {axis: [4, -2, 4], momentum: 1.5}'
 EVERYWHERE, NO_AXIS, FREE = ('free', 'pivot', 'hinge'), ('free', 'pivot'), ('free',)
 CASES = {
     'gravity: {g: 9.81}': (weight, EVERYWHERE),
+    'gravity: {g: [1, 2, -9]}': (field, EVERYWHERE),
+    **{f'gravity: {{g: {g}}}': (lambda now, kind, g=g: field(now, kind, g), FREE)
+       for g in ([0, 0, 9], [0, 2, -9], [1, 0, -9], [0, 0, -0.5])},
+    ROTOR: (rotor, EVERYWHERE),
+    'rotor: {axis: [4, -2, 4], inertia: 0.5, rate: 3, torque: 0.7}': (
+        lambda now, kind: rotor(now, kind, 1.5, 0.7), EVERYWHERE),
+    'rotor: {axis: [4, -2, 4], inertia: 0.5, rate: 3}': (rotor, FREE),
+    'dry_friction: {torque: 0.4}': (dry_friction, ('hinge',)),
     'drag: {linear: 0.7}': (linear_drag, EVERYWHERE),
     'drag: {angular: 0.3}': (angular_drag, EVERYWHERE),
     'drag: {linear: 0.7, angular: 0.3}': (both_drags, EVERYWHERE),
@@ -234,7 +261,33 @@ def test_what_acts_is_what_the_formula_says(effects, kind):
             assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
-POTENTIALS = ('gravity: {g: 9.81}', f'{SPRING}}}', f'{SPRING}, length: 0.8}}',
+@pytest.mark.parametrize(('effects', 'kind'), [*PLACES, ('wrench', 'free'), ('wrench', 'pivot')])
+def test_what_is_told_of_each_force_is_true_of_it(effects, kind):
+    """Along a line through the space of its arguments the differences of a polynomial end."""
+    scene = scene_of('' if effects == 'wrench' else effects, kind)
+    wrench = Wrench((1.0, -2.0, 3.0), (0.5, 0.7, -0.2), 'body')
+    effect = wrench if effects == 'wrench' else scene.effects[0]
+    begin, way = np.random.default_rng(3).normal(size=(2, 14))
+    binomial = np.array([1, -8, 28, -56, 70, -56, 28, -8, 1])
+    for one in effect.acting(scene.frame, 1.0):
+        kernel, count = function(one.kernel), 14 if one.in_field else 10
+        line = np.array([kernel(*one.values, *(0.1 * begin + step * way)[:count])
+                         for step in range(-4, 5)])
+        ends = np.abs(binomial @ line).max() < 1e-11 * np.abs(line).max()
+        # an expression may be one and need not say so
+        by_hand = one.kernel.startswith('rigid_body_sim.scene.effects.')
+        assert ends or not one.polynomial
+        assert one.polynomial or not ends or not by_hand
+        moved = [kernel(*one.values, *(begin + np.isin(np.arange(14), places))[:count])
+                 for places in ([], range(4, 10), [10])]
+        assert one.of_motion == (moved[1] != moved[0] and one.books != 'heat')
+        assert one.timed if moved[2] != moved[0] else not (one.timed and by_hand)
+        # whose momentum is inside of the body
+        assert one.inner == effects.startswith('rotor')
+
+
+POTENTIALS = ('gravity: {g: 9.81}', 'gravity: {g: [1, 2, -9]}', f'{SPRING}}}',
+              f'{SPRING}, length: 0.8}}',
               'gravity_gradient: {mu: 5, position: [2, -1, 2]}',
               'magnetic: {moment: [0.2, -0.5, 1.1], field: [0.3, 0.1, -0.7]}',
               'magnetic: {moment: [0.2, -0.5, 1.1], field: ["x*y", "z^2", "k*x"]}')
@@ -302,7 +355,8 @@ def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
 
 @pytest.mark.parametrize(('effects', 'kind'), [
     (effects, kind) for effects, kind in PLACES
-    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1')) and effects != SHAPED])
+    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1', ROTOR))
+    and effects != SHAPED])
 def test_a_power_series_is_given_the_same(effects, kind):
     """Pull: constant + arm x R^T force + R^T couple + drag omega; a free body is moved by it."""
     scene, now = scene_of(effects, kind), drawn(kind, 4)
@@ -319,3 +373,51 @@ def test_a_power_series_is_given_the_same(effects, kind):
     assert torque == pytest.approx(expected_torque, abs=1e-13)
     if kind == 'free':
         assert force == pytest.approx(expected_force, abs=1e-13)
+
+
+@pytest.mark.parametrize(('effects', 'momentum'), [
+    (ROTOR, 1.5), ('rotor: {axis: [4, -2, 4], inertia: 0.5, rate: 3, torque: 0.7}', 2.9)])
+def test_a_rotor_carries_its_momentum_along_its_axis(effects, momentum):
+    """At 2 s; what turns the other way carries the opposite."""
+    scene = scene_of(effects, 'free')
+    for sign, one in ((1.0, scene.effects[0]), (-1.0, scene.effects[0].opposite)):
+        carried = one.momentum(scene.frame)
+        found = Rotation.from_quat(scene.frame.axes).apply(
+            function(carried.kernel)(*carried.values, 2.0))
+        assert found == pytest.approx(sign * momentum * np.array([2.0, -1.0, 2.0]) / 3.0)
+    assert scene.effects[0].bounds(scene.body, scene.constraint).torque == near(
+        0.0 if effects == ROTOR else 0.7, rel=1e-15)
+
+
+@pytest.mark.parametrize('axes', [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]])
+@pytest.mark.parametrize(('moments', 'omega', 'fading'), [
+    ((0.3, 0.5, 0.7), (0.3, -0.5, 0.7), ()), ((0.3, 0.5, 0.7), (0.0, 0.4, 0.7), ()),
+    ((0.3, 0.5, 0.7), (0.8, 0.0, 1.2), ()), ((0.3, 0.5, 0.7), (0.0, 0.0, 2.0), ()),
+    # rates with the component along the least axis fade with it, the others with m across the
+    # largest one
+    ((0.3, 0.5, 0.7), (1e3 * ENDED, -0.3, 0.7), ()),
+    ((0.3, 0.5, 0.7), (1e-3 * ENDED, 0.3, 0.7), (1, 2)),
+    ((0.3, 0.5, 0.7), (1e3 * ENDED, 1e3 * ENDED, 0.7), ()),
+    ((0.3, 0.5, 0.7), (-1e-3 * ENDED, 1e-3 * ENDED, 0.7), (0, 1, 2)),
+    ((0.3, 0.3, 0.7), (1e-3 * ENDED, 0.3, 0.7), ()),
+    ((0.3, 0.7, 0.7), (1e-3 * ENDED, 0.3, 0.7), (1, 2)),
+    ((0.3, 0.7, 0.7), (1e3 * ENDED, 0.3, 0.7), ())])
+def test_inner_parts_turn_the_axes_until_a_wobble_is_too_small_to_show(
+        axes, moments, omega, fading):
+    """By c m x omega, until what is left of m is 2^-54 of it."""
+    I, w, order = np.array(moments)[axes], np.array(omega)[axes], np.argsort(axes)
+    turning = function('rigid_body_sim.scene.effects.internal_dissipation:turning')
+    found = np.array(turning(2.0, *I, 0.0, 0.0, 0.0, 1.0, *w, 0.0, 0.0, 0.0))[order]
+    expected = np.array([2.0 * (I[k - 2] - I[k - 1]) * w[k - 2] * w[k - 1] for k in range(3)])
+    for k, (one, full) in enumerate(zip(found, expected[order], strict=True)):
+        if k in fading:
+            assert abs(one) <= 1e-5 * abs(full)
+        else:
+            assert one == near(full, rel=1e-5)
+
+
+@pytest.mark.parametrize('g', ['[0, 0, -1.6]', '1.6'])
+def test_a_field_along_minus_z_is_one_that_has_closed_forms(g):
+    assert scene_of(f'gravity: {{g: {g}}}', 'free').effects == (Gravity(1.6),)
+    with pytest.raises(BadInput, match=r'gravity\.g: got -0\.1'):
+        scene_of('gravity: {g: -0.1}', 'free')
