@@ -1,69 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-<<<<<<< HEAD
-"""The table of methods: which ones can follow what acts."""
-=======
-"""The table of methods takes pages that keep their contract, and says what another one lacks."""
->>>>>>> 9051b9eb3f80402873fead7bf7e7f151a2869bb6
+"""The table of methods: what a page has to declare, and which pages can follow what acts."""
 
 import types
 
 import pytest
 
 from rigid_body_sim.errors import BadInput
-<<<<<<< HEAD
 from rigid_body_sim.integrators import METHODS
-from rigid_body_sim.integrators.registry import Methods
-
-
-def page(name, like='rk4', **changes):
-    """Return the page of a method of this package under another name."""
-    made = types.ModuleType(name)
-    made.__dict__.update(vars(METHODS[like]) | {'NAME': name} | changes)
-    return made
-
-
-def test_what_was_asked_before_changes_with_the_table():
-    table = Methods({'one': page('one')})
-    views = frozenset({METHODS['rk4'].NEEDS})
-    assert table.able(views, False, False, False) == ('one',)
-    table['two'] = page('two')
-    assert table.able(views, False, False, False) == ('one', 'two')
-    del table['one']
-    assert table.able(views, False, False, False) == ('two',)
-    table['two'] = page('two', HEAT=False)
-    assert table.able(views, True, False, False) == ()
-    assert table.able(views, False, False, False) == ('two',)
-
-
-@pytest.mark.parametrize(('acts', 'declared'), [('hot', 'HEAT'), ('in_field', 'FIELD')])
-def test_a_method_runs_what_it_declares(acts, declared):
-    table = Methods({'with': page('with', **{declared: True}),
-                     'without': page('without', **{declared: False})})
-    views = frozenset({METHODS['rk4'].NEEDS})
-    calm = {'hot': False, 'kinked': False, 'in_field': False}
-    assert table.able(views, **calm) == ('with', 'without')
-    assert table.able(views, **calm | {acts: True}) == ('with',)
-
-
-def test_only_methods_that_stop_at_kinks_run_what_has_some():
-    names = METHODS.able(frozenset(one.NEEDS for one in METHODS.values()), False, True, False)
-    assert names == tuple(name for name, one in METHODS.items() if one.FAMILY.KINKS) != ()
-
-
-def test_a_view_counts_where_every_effect_has_it():
-    table = Methods({name: METHODS[name] for name in ('dop8', 'taylor')})
-    needs = METHODS['dop8'].NEEDS, METHODS['taylor'].NEEDS
-    both = types.SimpleNamespace(**dict.fromkeys(needs, print))
-    first = types.SimpleNamespace(**{needs[0]: print, needs[1]: None})
-    assert table.views([]) == table.views([both]) == set(needs)
-    assert table.views([both, first]) == {needs[0]}
-    assert table.able(table.views([both, first]), False, False, False) == ('dop8',)
-
-
-def test_a_table_of_a_wrong_page_is_refused_when_it_is_made():
-    with pytest.raises(BadInput, match="its page calls itself 'one'"):
-        Methods({'two': page('one')})
-=======
 from rigid_body_sim.integrators.registry import Methods
 
 FAMILY = {'ASKS': {'accuracy': ('A', 'E'), 'step': ('A',)}, 'TABLE': True, 'TAKES_WRENCH': True,
@@ -109,4 +52,53 @@ def test_a_family_declares_everything_too(name):
     of = types.SimpleNamespace(**{one: value for one, value in FAMILY.items() if one != name})
     with pytest.raises(BadInput, match=f'method mine: FAMILY.*lacks {name}'):
         Methods()['mine'] = types.SimpleNamespace(FAMILY=of, **PAGE)
->>>>>>> 9051b9eb3f80402873fead7bf7e7f151a2869bb6
+
+
+def renamed(name, **changes):
+    """Return the page of rk4 under another name."""
+    made = types.ModuleType(name)
+    made.__dict__.update(vars(METHODS['rk4']) | {'NAME': name} | changes)
+    return made
+
+
+def test_what_was_asked_before_changes_with_the_table():
+    table = Methods({'one': renamed('one')})
+    views = frozenset({METHODS['rk4'].NEEDS})
+    assert table.able(views, False, False, False) == ('one',)
+    table['two'] = renamed('two')
+    assert table.able(views, False, False, False) == ('one', 'two')
+    del table['one']
+    assert table.able(views, False, False, False) == ('two',)
+    table['two'] = renamed('two', HEAT=False)
+    assert table.able(views, True, False, False) == ()
+    assert table.able(views, False, False, False) == ('two',)
+
+
+@pytest.mark.parametrize(('acts', 'declared'), [('hot', 'HEAT'), ('in_field', 'FIELD')])
+def test_a_method_runs_what_it_declares(acts, declared):
+    table = Methods({'with': renamed('with', **{declared: True}),
+                     'without': renamed('without', **{declared: False})})
+    views = frozenset({METHODS['rk4'].NEEDS})
+    calm = {'hot': False, 'kinked': False, 'in_field': False}
+    assert table.able(views, **calm) == ('with', 'without')
+    assert table.able(views, **calm | {acts: True}) == ('with',)
+
+
+def test_only_methods_that_stop_at_kinks_run_what_has_some():
+    names = METHODS.able(frozenset(one.NEEDS for one in METHODS.values()), False, True, False)
+    assert names == tuple(name for name, one in METHODS.items() if one.FAMILY.KINKS) != ()
+
+
+def test_a_view_counts_where_every_effect_has_it():
+    table = Methods({name: METHODS[name] for name in ('dop8', 'taylor')})
+    needs = METHODS['dop8'].NEEDS, METHODS['taylor'].NEEDS
+    both = types.SimpleNamespace(**dict.fromkeys(needs, print))
+    first = types.SimpleNamespace(**{needs[0]: print, needs[1]: None})
+    assert table.views([]) == table.views([both]) == set(needs)
+    assert table.views([both, first]) == {needs[0]}
+    assert table.able(table.views([both, first]), False, False, False) == ('dop8',)
+
+
+def test_a_table_of_a_wrong_page_is_refused_when_it_is_made():
+    with pytest.raises(BadInput, match="its page calls itself 'one'"):
+        Methods({'two': renamed('one')})
