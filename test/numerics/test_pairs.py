@@ -8,6 +8,8 @@ import pytest
 
 from rigid_body_sim.numerics import pairs
 
+pytestmark = pytest.mark.without_numba
+
 U2 = Fraction(1, 2 ** 106)
 A, B, MINUS = (1.7, 3e-17), (0.3, -1.1e-17), (-2.3, 1.3e-16)
 
@@ -17,16 +19,19 @@ def exact(p):
     return Fraction(p[0]) + Fraction(p[1])
 
 
-@pytest.mark.parametrize(('found', 'expected'), [
-    (pairs.plus(A, B), exact(A) + exact(B)), (pairs.minus(A, MINUS), exact(A) - exact(MINUS)),
-    (pairs.times(A, MINUS), exact(A) * exact(MINUS)),
-    (pairs.over(A, MINUS), exact(A) / exact(MINUS)),
-    (pairs.scaled(A, -0.25), -exact(A) / 4),
-    (pairs.products(1.7, 0.3, 2.3, 0.7),
+@pytest.mark.parametrize(('of', 'expected'), [
+    (lambda: pairs.plus(A, B), exact(A) + exact(B)),
+    (lambda: pairs.minus(A, MINUS), exact(A) - exact(MINUS)),
+    (lambda: pairs.times(A, MINUS), exact(A) * exact(MINUS)),
+    (lambda: pairs.over(A, MINUS), exact(A) / exact(MINUS)),
+    (lambda: pairs.scaled(A, -0.25), -exact(A) / 4),
+    (lambda: pairs.products(1.7, 0.3, 2.3, 0.7),
      Fraction(1.7) * Fraction(0.3) + Fraction(2.3) * Fraction(0.7)),
-    (pairs.pair_of(Fraction(1, 3)), Fraction(1, 3)), (pairs.quotient(-22, 7), Fraction(-22, 7)),
-    (pairs.quotient_of(0.1, 0.7), Fraction(0.1) / Fraction(0.7))])
-def test_results_have_32_digits(found, expected):
+    (lambda: pairs.pair_of(Fraction(1, 3)), Fraction(1, 3)),
+    (lambda: pairs.quotient(-22, 7), Fraction(-22, 7)),
+    (lambda: pairs.quotient_of(0.1, 0.7), Fraction(0.1) / Fraction(0.7))])
+def test_results_have_32_digits(of, expected):
+    found = of()
     assert abs(exact(found) / expected - 1) <= 15 * U2
     assert abs(found[1]) <= 2.0 ** -53 * abs(found[0])
 

@@ -2,8 +2,11 @@
 """Vectors and matrices as tuples beside NumPy, of small whole numbers, which do not round."""
 
 import numpy as np
+import pytest
 
 from rigid_body_sim.numerics import vectors
+
+pytestmark = pytest.mark.without_numba
 
 A, B = (2.0, -3.0, 5.0), (7.0, 11.0, -13.0)
 MATRIX = (1.0, 2.0, 3.0), (-4.0, 5.0, 6.0), (7.0, -8.0, 10.0)

@@ -54,7 +54,7 @@ def test_both_forms_are_quotients_of_theta_functions(k2, share, s):
                 of_hyperbolic, rotation.load_hyperbolic(hyperbolic), v))
             # y = v K/K', less what is in the drift (turns of the half angle)
             assert float(slope_y * K / Kc - drift) == pytest.approx(float(rate), abs=2e-14)
-        for turns in (0.0, 0.07, 0.37, 0.5, -0.45):
+        for turns in (0.0, 0.24, 0.37, 0.5, -0.26):
             omega, half = expected_at(2 * mp.pi * mpf(turns), k2, zero, s)
             for form in forms:
                 found, re, im, along = form((turns, 0.0))
