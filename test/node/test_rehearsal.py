@@ -27,6 +27,7 @@ class Noted(Session):
         super().__init__(*parts)
 
     def run_tick(self, publish):
+        assert publish
         self.seen.append('prefetched' if self._ahead else 'tick')
         super().run_tick(publish)
 

@@ -4,6 +4,7 @@
 import types
 
 import pytest
+from near import near
 
 from rigid_body_sim.realtime import playing
 from rigid_body_sim.realtime.playing import Player, Reading
@@ -32,7 +33,7 @@ class Read:
 @pytest.fixture
 def play(monkeypatch):
     """Return a function that plays: (Player, when each message was sent, what /clock told)."""
-    def play(reading, rate=1.0, paused=False, stop_at=None):
+    def play(reading, rate=1.0, paused=False, stop_at=None, cost=0):
         clock, sent, told = types.SimpleNamespace(now=MS), [], []
         asked = []
 
@@ -41,11 +42,15 @@ def play(monkeypatch):
             assert seconds <= 0.01
             if stop_at is not None and clock.now >= stop_at:
                 player.stop()
+
+        def publish(data):
+            sent.append(clock.now - MS)
+            clock.now += cost
         monkeypatch.setattr(playing, 'time', types.SimpleNamespace(
             monotonic_ns=lambda: clock.now, sleep=sleep))
         monkeypatch.setattr(playing, 'ask_for_priority', asked.append)
         ended = []
-        player = Player(reading, {'/a': lambda data: sent.append(clock.now - MS)},
+        player = Player(reading, {'/a': publish},
                         lambda time: told.append((clock.now - MS, time)), rate, paused,
                         lambda: ended.append(1))
         player.run()
@@ -62,6 +67,12 @@ def test_messages_are_sent_at_their_instants_and_the_clock_goes_on_between_them(
     assert (player.published, player.loops, player.now) == (3, 1, 75 * MS)
     assert player.seconds == 0.025 and asked == [True]
     assert player.lateness.summary()['max'] == 0.0
+
+
+def test_a_message_that_is_due_while_another_one_is_sent_is_late(play):
+    player, sent, _, _ = play(Read((0, 0), (3 * MS, 3 * MS), (25 * MS, 25 * MS)), cost=5 * MS)
+    assert sent == [0, 5 * MS, 25 * MS]
+    assert player.lateness.summary()['max'] == near(0.002, rel=1e-12)
 
 
 @pytest.mark.parametrize(('rate', 'sent', 'told', 'real_time'), [
