@@ -15,6 +15,8 @@ from rigid_body_sim.integrators.equations.series import COUNT, SERIES
 from rigid_body_sim.integrators.marching import batch, batch_lane
 from rigid_body_sim.integrators.marching.batch_march import ANYBODY, NOBODY, SEATS
 
+pytestmark = pytest.mark.without_numba
+
 UNIT = np.eye(3)
 
 

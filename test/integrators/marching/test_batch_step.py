@@ -239,6 +239,7 @@ def test_a_step_that_leaves_less_than_a_tenth_of_itself_goes_to_the_end(room, en
         assert (found[batch_lane.TIME] == table[batch_lane.END]).all()
 
 
+@pytest.mark.without_numba
 def test_a_scale_is_the_largest_rate_so_far_or_what_the_torque_gives():
     """Of a body at rest: the root of omega'^2, a squared rate; else the larger of both."""
     form = batch_hinge.FORM._replace(order=batch_lane.COARSE)

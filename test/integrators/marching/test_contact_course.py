@@ -120,7 +120,8 @@ class Body(PlaneCourse):
         self._begin, self._place, self._tolerance = BEGIN, (1.0, 2.0), 1e-9
         self._wide, self._why, self._work = WIDEST, '', 'work'
         self.p, self.y = np.zeros(CONTACT.size), np.zeros(SIZE)
-        self.p[MU], self.p[MASS], self.p[SWIFT], self.p[SIZES] = 0.5, 3.0, SPEED, 0.25
+        self.p[MU], self.p[MASS], self.p[SWIFT], self.p[SIZES] = (
+            0.5, 3.0, SPEED, (0.25, 0.5, 0.125))
         self.y[3], self.y[TIME] = 1.0, 2.5
 
     def taken_down(self, name):
@@ -232,6 +233,8 @@ def test_a_ring_that_lies_rests_where_friction_stops_it_and_gives_way_elsewhere(
     (ROLLING, 0.5, {'load': {'tilting': (0.48, 0.15, 0.0)}, 'row': {GRIP: -1.1 * HOLDS}},
      [('_topple', (-0.48, -0.15)), FREE, ('_creep_off',)]),
     (ROLLING, 0.5, {'load': {'tilting': (0.48, 0.15, 0.0)}, 'row': {GRIP: -0.9 * HOLDS}},
+     [('_topple', (-0.48, -0.15)), FREE, ('_open', ROLLING)]),
+    (ROLLING, 0.5, {'load': {'tilting': (0.48, 0.15, 0.0)}, 'row': {NORMAL: 1e-9}},
      [('_topple', (-0.48, -0.15)), FREE, ('_open', ROLLING)]),
     (SLIDING, 0.5, {'load': {'tilting': (0.48, 0.15, 0.0)}, 'row': {GRIP: -1.0}},
      [('_topple', (-0.48, -0.15)), FREE, ('_open', SLIDING)]),
@@ -489,6 +492,22 @@ def test_each_way_in_which_a_phase_ends_has_its_sequel(phase, what, done, monkey
     assert body._events == ([(102.5, 'lift-off', {})] if done == [('_fly',)] else [])
 
 
+@pytest.mark.parametrize('told', [True, False])
+def test_a_slip_that_ends_in_rest_is_told_to_once(told, monkeypatch):
+    """The landing tells it of a body that lies, and not of one that is held."""
+    body, of = Body(monkeypatch, '_follow', _died=False), ended(M.STUCK)[0]
+    body._tell = types.MethodType(PlaneCourse._tell, body)
+
+    def land(p, y, slip):
+        body._phases.append(types.SimpleNamespace(p=p.copy()))
+        body._phases[-1].p[MODE] = RESTING
+        if told:
+            body._events.append((102.5, 'rest', {}))
+    body._land, body.p[MODE], of.p, of.front = land, SLIDING, body.p, body.y
+    body._follow(of)
+    assert body._events == [(102.5, 'rolling began', {}), (102.5, 'rest', {})]
+
+
 def test_a_phase_in_which_no_step_is_small_enough_is_said_to_be(monkeypatch):
     for kernels, low in (('usual', True), ('series', False)):
         body = Body(monkeypatch, '_follow', lies_low=low, _died=False)
@@ -604,13 +623,13 @@ def test_phases_that_follow_each_other_without_end_are_a_fault(monkeypatch):
     """Three of them, within a millionth of the time of a length, 1.25e-7 s."""
     monkeypatch.setattr(contact_course, 'MOST_PHASES', 3)
     for share, fault in ((0.9, True), (1.1, False)):
-        body, _ = opened(monkeypatch, ROLLING, time=0.0)
+        body, _ = opened(monkeypatch, ROLLING)
         for part in (0.3, 0.6):
-            body.y[TIME] = part * 1.25e-7
+            body.y[TIME] = 2.5 + part * 1.25e-7
             body._open(ROLLING, body.p, body.y.copy())
-        body.y[TIME] = share * 1.25e-7
+        body.y[TIME] = 2.5 + share * 1.25e-7
         if fault:
-            with pytest.raises(NotConverged, match=r'at t = 100\.0000001\d* s phases of contact'):
+            with pytest.raises(NotConverged, match=r'at t = 102\.5000001\d* s phases of contact'):
                 body._open(ROLLING, body.p, body.y)
         else:
             body._open(ROLLING, body.p, body.y)
