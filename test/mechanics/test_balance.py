@@ -196,3 +196,98 @@ def test_acceleration_of_a_simulation_is_the_slope_of_its_velocity():
 def test_free_body_has_no_reaction():
     with pytest.raises(BadInput, match='nothing holds the body of tennis_racket'):
         Simulation('tennis_racket').reactions([0.0])
+
+
+def test_axes_that_dissipate_turn_by_more_than_omega_and_keep_the_momentum():
+    """By u = c (m x omega + Gamma): Gamma is the weight's about the pivot, a wrench's is none.
+
+    Momenta change by what acts, as the axes turn with omega + u.
+    """
+    for constraint in ('free', 'pivot'):
+        vector, h = state(constraint).vector, 1e-5
+        made = scene(constraint, '[gravity: {g: 9.81}, internal_dissipation: {coefficient: 3}]')
+        balance = Dynamics(made).balance(vector, WRENCH)
+        q, omega, body = vector[1:5], vector[5:8], made.body
+        held = constraint == 'pivot'
+        down = np.array(rotate(*(-q[:3]), q[3], 0.0, 0.0, -2.0 * G))
+        pull = np.cross(body.center_of_mass, down) if held else np.zeros(3)
+        inertia = made.constraint.inertia(body).matrix if held else body.about_center.matrix
+        extra = 3.0 * (np.cross(inertia @ omega, omega) + pull)
+        assert np.linalg.norm(extra) > 0.3
+
+        def later(t, vector=vector, balance=balance, extra=extra):
+            out = moved(vector, balance, t)
+            turn = t * (vector[5:8] + extra) + 0.5 * t * t * balance.angular_acceleration
+            out[1:5] = multiply(*vector[1:5], *from_rotation_vector(*turn))
+            return out
+        around = [later(side * h) for side in (-1.0, 1.0)]
+        p, spin = (np.array([part(one) for one in around]) for part in (
+            lambda one: momentum(body, one, balance.point)[0],    # noqa: B023 (called at once)
+            lambda one: rotate(*one[1:5], *(inertia @ one[5:8]))))    # noqa: B023
+        force = np.array(rotate(*q, *WRENCH.force)) - [0.0, 0.0, 2.0 * G]
+        about = np.cross(rotate(*q, *body.center_of_mass), force) if held else np.zeros(3)
+        # measured: 1.1e-8
+        assert (p[1] - p[0]) / (2 * h) == pytest.approx(force + balance.force, abs=2e-7)
+        assert (spin[1] - spin[0]) / (2 * h) == pytest.approx(
+            rotate(*q, *WRENCH.torque) + about, abs=2e-7)
+
+
+@pytest.mark.parametrize('through', [(0.05, 0.0, -0.1), (0.0, 0.0, 0.0)])
+def test_a_pivot_that_moves_takes_its_point_of_the_body_along(through):
+    """The point has the acceleration of the path; the reaction acts there, without a couple."""
+    made = scene(f"{{pivot: {{at: {list(through)}, motion: ['0.3*t^2', '-0.1*t^3', '0.2*t']}}}}")
+    vector = State.of(0.5, from_rotation_vector(0.3, 1.2, 0.4), (1.0, -2.0, 3.0),
+                      (0.2, -0.1, 0.4)).vector
+    found = Dynamics(made).balance(vector, WRENCH)
+    q, omega, growth = vector[1:5], vector[5:8], found.angular_acceleration
+
+    def carried(arm):
+        return np.array(rotate(*q, *(np.cross(growth, arm) + np.cross(omega, np.cross(
+            omega, arm)))))
+    # measured: 4e-16
+    assert found.acceleration + carried(through) == pytest.approx([0.6, -0.3, 0.0], abs=1e-14)
+    center, inertia = np.array(made.body.center_of_mass), made.body.about_center.matrix
+    force = np.array(rotate(*q, *WRENCH.force)) - [0.0, 0.0, 2.0 * G] + found.force
+    assert 2.0 * (found.acceleration + carried(center)) == pytest.approx(force, abs=1e-13)
+    lever = np.cross(through - center, rotate(*(-q[:3]), q[3], *found.force))
+    assert inertia @ growth + np.cross(omega, inertia @ omega) == pytest.approx(
+        WRENCH.torque + lever, abs=1e-13)
+    assert not found.torque.any()
+    assert found.point == pytest.approx(vector[8:11] + rotate(*q, *through), abs=1e-15)
+
+
+@pytest.mark.parametrize(('speed', 'slides'), [(0.0, False), (0.3, True)])
+@pytest.mark.parametrize('size', [0.02, 50.0])
+def test_a_ball_on_the_table_obeys_newton_and_coulomb_under_any_push(speed, slides, size):
+    """What acts along the table and about it, and lifts; friction holds what it can."""
+    ball = load_scene('billiard_center')
+    M, a, mu = ball.body.mass, ball.body.radius, ball.effect('sliding_friction').mu
+    q, omega = from_rotation_vector(0.3, 1.2, 0.4), np.array([0.6, -0.8, 0.5]) / a
+    back, down = (*(-np.array(q[:3])), q[3]), np.array([0.0, 0.0, -a])
+    velocity = speed * np.array([0.0, 1.0, 0.0]) - np.cross(omega, down)
+    start = State.of(0.0, q, rotate(*back, *omega), velocity=velocity).vector
+    push, couple = size * np.array([0.1, -0.2, 0.01]), size * a * np.array([0.05, 0.1, -0.2])
+    found = Dynamics(ball).balance(start, Wrench(tuple(push), tuple(couple)))
+    growth, moment = np.array(rotate(*q, *found.angular_acceleration)), 0.4 * M * a * a
+    N = M * ball.effect('sliding_friction').g - push[2]
+    assert found.force[2] == near(N, rel=1e-14)
+    friction = found.force * [1.0, 1.0, 0.0]
+    assert M * found.acceleration == pytest.approx(push * [1, 1, 0] + friction, abs=1e-13)
+    assert moment * growth == pytest.approx(couple + np.cross(down, friction), abs=1e-14)
+    slip = found.acceleration + np.cross(growth, down)
+    if slides:
+        assert friction == pytest.approx([0.0, -mu * N, 0.0], abs=1e-13)
+    elif size < 1.0:
+        assert slip == pytest.approx(np.zeros(3), abs=1e-13)
+        assert np.linalg.norm(friction) < mu * N
+    else:    # it begins to slip, against friction
+        assert np.linalg.norm(friction) == near(mu * N, rel=1e-14)
+        assert slip @ friction == near(-np.linalg.norm(slip) * mu * N, rel=1e-12)
+    assert found.point == pytest.approx(start[8:11] + down, abs=1e-15)
+
+
+def test_a_rod_takes_no_torque_along_itself():
+    made = scene('free', '[]', '{mass: 2.0, inertia: [0, 0.3, 0.3]}')
+    found = Dynamics(made).balance(State.of(0.0, angular_velocity=(0.0, 1.0, 2.0)).vector,
+                                   Wrench(torque=(0.3, 0.6, -0.9)))
+    assert found.angular_acceleration == pytest.approx([0.0, 2.0, -3.0], abs=1e-14)    # 4e-16

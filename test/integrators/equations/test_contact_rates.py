@@ -119,6 +119,7 @@ def test_what_is_written_holds_each_heat_by_its_cause():
 
 
 EFFECTS = ', drag: {linear: 0.2}, torque: {value: [0.1, -0.2, 0.3]}'
+SLOPE = '{table: {normal: [0.1, -0.2, 1]}}'
 POINT, PATCH = ', sliding_friction: {mu: 0.3}', (
     ', sliding_friction: {mu: 0.9}, spinning_friction: {radius: 0.02}')
 IDEAL, VISCOUS, DRY = (', sliding_friction: {mu: .inf}', ', rolling_friction: {viscous: 0.02}',
@@ -155,7 +156,7 @@ def row_of(surface, effects, mode, slip, changes, start=None):
 
     `start` is another attitude and angular velocity.
     """
-    scene = scene_of(surface, EFFECTS + effects, '{table: {normal: [0.1, -0.2, 1]}}')
+    scene = scene_of(surface, EFFECTS + effects, SLOPE)
     bound = OnPlane(scene, None, None, None)
     p, y, row = bound.parameters(0.0), np.zeros(UNKNOWNS.size), np.empty(ROW.size)
     c = CONTACT.load(p.tolist())._replace(mode=mode, swift=1.0, creep=1.0, **{

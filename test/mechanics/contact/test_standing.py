@@ -5,11 +5,16 @@ import math
 
 import numpy as np
 import pytest
+from integrators.equations.test_contact_rates import CASES, EFFECTS, SLOPE, row_of
+from mechanics.contact.test_touch import scene_of
 from near import near
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.integrators.equations.contact_views import CREEPING, FLIGHT
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.contact.standing import Standing
+from rigid_body_sim.mechanics.contact.touch import tangent
+from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.surfaces import KINDS, lowest
 
@@ -195,3 +200,74 @@ def test_a_disk_that_has_come_to_rest_is_held_by_its_face(friction, tilt, lies):
         assert balance.force == pytest.approx([0.0, 0.0, 2.0 * 9.81], abs=1e-15)
     else:
         assert balance.acceleration[2] == near(-0.8 * 9.81, rel=1e-3)
+
+
+LOW_TORUS = ((np.sin(2.5e-4), 0.0, 0.0, np.cos(2.5e-4)), -0.2, 0.5)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('name', [
+    'flight', 'glides', 'slides', 'slides and rolls', 'slides as a disk in air',
+    'slides with a patch', 'spins on a patch', 'rolls', 'rolls under dry friction', 'is held',
+    'slides and is held', 'rolls on a patch', 'creeps', 'creeps with a patch', 'tips'])
+def test_the_force_at_an_instant_is_the_one_of_the_phase_that_the_body_is_in(name):
+    """The phases (contact_rates.py) are told of it, the balance finds it from the state."""
+    surface, effects, mode, slip, changes = CASES[name]
+    start = None
+    if name == 'tips':    # a torus does so where it is low
+        q, along, spin = LOW_TORUS
+        n = np.array(matrix(*q)[2])
+        start = q, tuple((along * np.array(tangent(tuple(n))) + spin * n).tolist())
+    if mode == CREEPING:
+        slip = 1e-14, 0.0
+    if name in ('is held', 'tips'):    # by enough
+        effects = effects.replace('mu: 0.3', 'mu: 5.0')
+    if 'held' in name:
+        effects = effects.replace('dry: 0.01', 'dry: 2.0')
+    c, _, at, row = row_of(surface, effects, mode, slip, changes, start)
+    assert row.watched.rolling > 0.0
+    assert mode == FLIGHT or row.watched.grip > 0.0
+    plane = Rotation.from_quat(c.plane)
+    turn, v = plane * Rotation.from_matrix(np.array(at.axes)), np.array(row.velocity)
+    height = -np.dot(at.axes[2], at.r) + 0.1 * (mode == FLIGHT)
+    force = [0.0, 0.0, -9.81 * c.mass] - 0.2 * plane.apply(v)
+    one = Standing(scene_of(surface, EFFECTS + effects, SLOPE))
+    found, couple, lever = on_body(
+        one, turn, np.array(at.omega), plane.apply([0.7, -0.4, height]), plane.apply(v), force,
+        np.array([0.1, -0.2, 0.3]))
+    assert found == pytest.approx(plane.apply(row.force), abs=1e-11)    # 3e-13
+    assert couple == pytest.approx(np.array(at.axes).T @ row.couple, abs=1e-12)    # 8e-15
+    assert lever == pytest.approx(at.r, abs=1e-12)    # 1.1e-14, of a low torus
+
+
+@pytest.mark.parametrize(('slope', 'rolls', 'growth'), [
+    (0.5, 0.0, 0.5 - 0.04), (0.5, -1e-9, 0.5 - 0.04), (0.5, 1e-3, 0.5 - 0.04),
+    (0.5, -1e-3, 0.5 + 0.04), (0.02, 0.0, 0.0), (0.02, 1e-9, 0.02 - 0.04),
+    (0.02, -1e-9, 0.02 + 0.04)])
+@pytest.mark.parametrize('spin', [0.0, 0.7])
+def test_a_ball_begins_to_roll_down_where_friction_does_not_hold_it(slope, rolls, growth, spin):
+    """It rolls with 5/7 g (sin - C cos) down, and stays where C is more than the slope.
+
+    Rolling friction of a force C N is a couple R C N; while the ball goes up both go against it.
+    """
+    radius, mass, dry = 0.1, 2.0, 0.04
+    one = Standing(parse_scene(
+        f'scene: s\nbody: {{mass: {mass}, shape: {{solid_sphere: {{radius: {radius}}}}}, '
+        f'surface: {{sphere: {{radius: {radius}}}}}}}\n'
+        f'constraint: {{table: {{normal: [{slope}, 0.0, 1.0]}}}}\neffects: [gravity: {{g: 9.81}}, '
+        f'sliding_friction: {{mu: 0.9}}, rolling_friction: {{dry: {dry}}}]\n'
+        'initial: {position: [0, 0, 1]}\n'))
+    size = math.hypot(slope, 1.0)
+    n, down = np.array([slope, 0.0, 1.0]) / size, np.array([1.0, 0.0, -slope]) / size
+    omega = np.cross(n, down) * rolls / radius + spin * n
+    force, couple, _ = on_body(one, Rotation.identity(), omega, radius * n, rolls * down,
+                               WEIGHT, np.zeros(3))
+    a = 5.0 / 7.0 * 9.81 / size * growth
+    N = mass * 9.81 / size
+    assert force @ n == near(N, rel=1e-12)
+    along = mass * (a - 9.81 * slope / size)
+    assert force - N * n == pytest.approx(along * down, abs=1e-8)    # 2e-10
+    # I omega' = couple - R n x force
+    expected = 0.4 * mass * radius * a * np.cross(n, down) + radius * np.cross(n, force)
+    assert couple == pytest.approx(expected, abs=1e-7)
+    assert np.linalg.norm(couple) == near(radius * N * (dry if growth else slope), rel=1e-6)
