@@ -28,6 +28,7 @@ import collections
 import concurrent.futures
 import contextlib
 import copy
+import functools
 import json
 import os
 import pathlib
@@ -267,8 +268,11 @@ def _put(statement, node, other):
     return Put().visit(shallow(statement))
 
 
-def mutants_of(path, root=ROOT):
-    """Return kind -> list of functions that make the mutants of a file."""
+def mutants_of(path, root=ROOT, among=None):
+    """Return kind -> list of functions that make the mutants of a file.
+
+    `among` holds texts: only of statements that have one of them.
+    """
     text = path.read_text()
     lines = text.splitlines(keepends=True)
     starts = [0]
@@ -287,7 +291,10 @@ def mutants_of(path, root=ROOT):
                       site.kind, _text(site.statement),
                       _text(_put(site.statement, node, other)), source)
 
+    text_of = functools.cache(_text)    # a statement has many sites
     for site in sites(ast.parse(text)):
+        if among is not None and not any(one in text_of(site.statement) for one in among):
+            continue
         found[site.kind].append(lambda chance, site=site: make(site, chance.choice(site.becomes)))
     return found
 

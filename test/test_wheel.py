@@ -79,12 +79,12 @@ def environment(built, tmp_path_factory):
     return folder / 'bin', before, after
 
 
-def run(bin_folder, *arguments, code=0):
+def run(bin_folder, *arguments):
     """Run the installed command in the folder of executables; return its output."""
     done = subprocess.run([bin_folder / 'rigid_body_sim', *arguments], cwd=bin_folder, env=CLEAN,
                           capture_output=True, text=True, timeout=240)
-    assert done.returncode == code, done.stderr
-    return done.stdout if not code else done.stderr
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def test_one_command_lands_in_bin(environment):
@@ -136,7 +136,7 @@ def test_a_recording_needs_neither_ros_nor_rosbags_nor_numba(environment, tmp_pa
     assert done.stdout.startswith('identical, 501 states')
 
 
-def test_completion_offers_commands_options_and_scenes(environment):
+def test_completion_offers_commands_and_scenes(environment):
     if not shutil.which('bash'):
         pytest.skip('needs bash')
     script = run(environment[0], '--completion', 'bash')
@@ -148,10 +148,7 @@ def test_completion_offers_commands_options_and_scenes(environment):
                               check=True).stdout.split()
 
     assert offered('rigid_body_sim', 'sim') == ['sim_node', 'simulate']
-    assert '--accuracy' in offered('rigid_body_sim', 'simulate', '--a')
     assert offered('rigid_body_sim', 'simulate', '--scene', 'tenn') == ['tennis_racket']
-    assert 'bashcompinit' in run(environment[0], '--completion', 'zsh')
-    assert 'one of bash, zsh' in run(environment[0], '--completion', 'tcsh', code=2)
 
 
 def test_the_wheel_has_the_data_files_of_the_tree(built):

@@ -95,14 +95,16 @@ def test_the_figure_shows_what_was_recorded(eventful):
     assert {text.get_text() for text in late.get_legend().get_texts()} == {'p50', 'p99', 'max'}
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_flips_are_counted_without_looking_at_events(tmp_path):
-    made.record(tmp_path / 'run', 'tennis_racket', 6000, rate=300.0)
+    made.record(tmp_path / 'run', 'tennis_racket', 1500, rate=75.0)
     [found], _ = analyze(tmp_path / 'run', tmp_path / 'report', short=True)
     omega = Recording(tmp_path / 'run').read('/angular_velocity')['vector']
     assert found['flips'] == np.count_nonzero(np.diff(omega[:, 1] > 0.0)) == 4
     assert found['events'].get('flip', 4) == 4
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_drift_that_is_there_is_found(tmp_path):
     """The energy of coarse steps drifts: the report has the drift that the messages show."""
     simulation = Simulation('tennis_racket', integrator='dop8', accuracy=1e-4, rate=100.0)
@@ -152,6 +154,7 @@ def test_two_bodies_in_one_recording(tmp_path):
         'report.txt', 'report.json', 'overview_left.png', 'overview_right.png'}
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_the_report_lies_beside_the_recording(tmp_path, monkeypatch, capsys):
     made.record(tmp_path / 'one.a', 'tennis_racket', 20)
     file = tmp_path / 'one.a' / 'one.a_0.mcap'
@@ -191,6 +194,7 @@ def test_bad_input_is_one_line(tmp_path, capsys):
         assert said in error and error.count('\n') == 1
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_a_folder_of_recordings_stands_for_the_newest(eventful, tmp_path, capsys):
     for number, name in enumerate(('b', 'a')):
         shutil.copytree(eventful(), tmp_path / name)

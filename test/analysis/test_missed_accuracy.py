@@ -31,6 +31,7 @@ def test_no_run_and_several():
     assert missed([good, bad, bad]) == [SAID]
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_text_and_page_say_it(tmp_path, monkeypatch):
     run_of = about.run_of
     monkeypatch.setattr(about, 'run_of', lambda simulation: {

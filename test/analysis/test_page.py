@@ -136,6 +136,7 @@ def test_a_browser_draws_it_without_an_error(written, tmp_path):
     assert console(broken)[1]
 
 
+@pytest.mark.usefixtures('undrawn')
 def test_without_plotly_the_rest_is_made_and_it_is_said(tmp_path, monkeypatch, capsys):
     made.record(tmp_path / 'run', 'tennis_racket', 30)
     monkeypatch.setattr(page, 'available', lambda: False)

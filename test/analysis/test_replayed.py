@@ -63,6 +63,7 @@ def outcome(capsys, path):
     return status, json.loads(capsys.readouterr().out)['bodies'][0]
 
 
+@pytest.mark.usefixtures('undrawn')
 @pytest.mark.parametrize('stamps', [True, False])
 def test_a_recording_played_and_recorded_again_is_reproduced_to_the_bit(
         recording, tmp_path, capsys, stamps):

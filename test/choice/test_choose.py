@@ -244,7 +244,7 @@ def test_a_body_at_rest_has_a_first_tolerance_to_try(tolerance):
 def test_many_bodies_take_a_method_that_has_them_side_by_side_where_it_meets_the_accuracy():
     """A top with drag goes by collocation to 1e-12; eight bodies at once by series are quicker."""
     scene = parse_scene(DAMPED_TOP)
-    alone, together = (choose(scene, accuracy=1e-12, horizon=0.5, together=together)
+    alone, together = (choose(scene, accuracy=1e-12, horizon=0.1, together=together)
                        for together in (False, True))
     assert (alone.method, together.method) == ('gauss16', 'taylor')
     assert together.expected_error <= 1e-12

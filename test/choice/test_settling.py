@@ -181,7 +181,7 @@ def test_a_nutation_is_compared_with_a_run_as_fine_as_it_takes(accuracy, monkeyp
         return Stepped(scene, name, accuracy, horizon=horizon)
     monkeypatch.setattr(settling, 'Stepped', stepped)
     scene = parse_scene(FALLING.replace('EFFECTS', ROTOR))
-    settling.of_named(scene, Stepped(scene, 'dop8', accuracy, horizon=2e-4), accuracy, 2e-4)
+    settling.of_named(scene, Stepped(scene, 'dop8', accuracy, horizon=5e-5), accuracy, 5e-5)
     assert made == [max(FINEST, 2.0 ** -7 * accuracy)]
 
 

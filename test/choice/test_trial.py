@@ -132,6 +132,7 @@ ERRORS = {
     'rounding is magnified': (lambda one: 1.4e-11, 1.4e-11)}
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('error', 'most'), ERRORS.values(), ids=ERRORS)
 def test_one_finer_tolerance_that_does_not_help_is_not_the_last(error, most, monkeypatch):
     scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))

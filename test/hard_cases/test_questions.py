@@ -65,6 +65,7 @@ def test_an_exact_peer_has_no_error(name):
     assert asked.ask(peer()) < (0.05 if asked.unit == 's' else 5e-14)
 
 
+@pytest.mark.without_numba
 def test_errors_of_a_peer_that_is_wrong_are_those_of_its_states():
     kept.check('questions', {name: [case.asked.time, case.asked.unit, case.asked.ask(
         peer(wrong=askew))] for name, case in ASKED.items() if name[0] != '7'})

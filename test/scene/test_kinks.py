@@ -99,7 +99,8 @@ WORDS = {
                                   "'0.3*sign(qz)']}"}
 
 
-LIKE_OTHERS = 'min', 'max', 'where', 'a comparison', 'pieces of time'
+LIKE_OTHERS = 'abs', 'sign', 'min', 'max', 'where', 'a comparison', 'pieces of time'
+"""What the other scenes have, too."""
 
 
 @pytest.mark.without_numba

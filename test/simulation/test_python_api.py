@@ -13,7 +13,7 @@ import typing
 
 import numpy as np
 import pytest
-from soak import IN_SOAK
+from soak import some_of
 
 import rigid_body_sim
 from rigid_body_sim import BadInput, NotConverged, Simulation, State, States, load_scene
@@ -61,19 +61,21 @@ def test_an_override_that_is_wrong_is_one_line():
     assert '\n' not in str(refused.value)
 
 
+MADE = {'exact': {'scene': 'heavy_top'}, 'stepped': STEPPED,
+        'table': {'scene': 'billiard_follow'}}
+TAKEN = {'method': Simulation.copy, 'copy': copy.copy,
+         'pickle': lambda one: pickle.loads(pickle.dumps(one)), 'deepcopy': copy.deepcopy}
+
+
 @pytest.mark.without_numba
-@pytest.mark.parametrize('take', [
-    Simulation.copy, copy.copy, pytest.param(copy.deepcopy, marks=IN_SOAK),
-    lambda one: pickle.loads(pickle.dumps(one))], ids=['method', 'copy', 'deepcopy', 'pickle'])
-@pytest.mark.parametrize('made', [{'scene': 'heavy_top'}, STEPPED, {'scene': 'billiard_follow'}],
-                         ids=['exact', 'stepped', 'table'])
-def test_a_copy_goes_on_with_the_same_bits_and_leaves_the_original_alone(made, take):
-    one, untouched = Simulation(**made), Simulation(**made)
+@pytest.mark.parametrize(('made', 'taken'), some_of([*MADE], [*TAKEN]))
+def test_a_copy_goes_on_with_the_same_bits_and_leaves_the_original_alone(made, taken):
+    one, untouched = (Simulation(**MADE[made]) for _ in range(2))
     for simulation in (one, untouched):
         simulation.advance(300)
         simulation.impulse(force=(0.01, 0.0, 0.0), torque=(0.0, 0.01, 0.02))
         simulation.hold(torque=(0.0, 0.0, 0.01), frame='body')
-    other = take(one)
+    other = TAKEN[taken](one)
     assert (other.tick, other.time) == (300, 0.3)
     assert other.vector.tobytes() == one.vector.tobytes()
     assert other.ledger() == one.ledger()

@@ -100,21 +100,21 @@ def test_a_closed_form_that_rests_on_its_start_is_looked_for_again(moved):
 
 @pytest.mark.without_numba
 def test_a_method_and_its_tolerance_stay_without_a_trial(monkeypatch):
-    simulation = Simulation(parse_scene(ASYMMETRIC), accuracy=1e-6, horizon=5.0)
+    simulation = Simulation(parse_scene(ASYMMETRIC), accuracy=1e-6, horizon=2.0)
     settled = simulation.choice.settled
     monkeypatch.setattr(settling, 'settle', None)    # nothing is tried from here on
     start = simulation.states([1.5])[0]
     simulation.restart(start)
     begun = start.vector.copy()
     begun[0] = 0.0
-    fresh = Simulation(with_start(simulation.scene, begun), accuracy=1e-6, horizon=5.0,
+    fresh = Simulation(with_start(simulation.scene, begun), accuracy=1e-6, horizon=2.0,
                        settled=settled)
     assert simulation.states([2.0]).vector.tobytes() == fresh.states([2.0]).vector.tobytes()
     other = simulation.with_({'body.mass': 0.9})
     assert (other.choice.method, other.choice.tolerance) == (settled.method, settled.tolerance)
     assert other.scene.body.mass == 0.9
     again = Simulation(changed_scene(simulation.scene, {'body.mass': 0.9}), accuracy=1e-6,
-                       horizon=5.0, settled=settled)
+                       horizon=2.0, settled=settled)
     assert other.states([2.0]).vector.tobytes() == again.states([2.0]).vector.tobytes()
 
 

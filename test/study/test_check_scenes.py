@@ -30,7 +30,8 @@ from rigid_body_sim.theory import (
 QUICK = [name for name in SYSTEMS if not name.startswith((
     'billiard', 'driven', 'major', 'baseball', 'falling', 'rolling_', 'euler_disk', 'rattleback',
     'tippe', 'rising', 'routh', 'chaplygin', 'tossed', 'kapitza', 'librating'))]
-MARKS = {'sleeping_top': LONG_IN_PYTHON, 'kater_pendulum': pytest.mark.without_numba}
+MARKS = {'sleeping_top': LONG_IN_PYTHON, 'kater_pendulum': pytest.mark.without_numba,
+         'kater_pendulum_from_p': pytest.mark.without_numba}
 KEPT = 'predicted', 'tolerance', 'unit', 'as_written', 'detail'
 
 

@@ -17,6 +17,7 @@ from soak import IN_SOAK
 pytest.importorskip('xarray')
 
 from rigid_body_sim import BadInput, Simulation, parse_scene, sweep
+from rigid_body_sim.cli.sweep import main
 from rigid_body_sim.compilation.threads import on_all_cores, one_core
 from rigid_body_sim.sweeps import spec as specs
 from rigid_body_sim.sweeps import stores, work
@@ -347,19 +348,21 @@ def test_full_disk_is_one_line_and_the_sweep_goes_on(tmp_path):
     same(in_memory, sweep(spec, store=store))
 
 
-def test_command_forecasts_runs_and_refuses(tmp_path):
+def test_command_forecasts_runs_and_refuses(tmp_path, capsys):
     pytest.importorskip('zarr', minversion='3.1')
     spec = tmp_path / 'spec.yaml'
     spec.write_text(json.dumps(SMALL))
-    told = json.loads(command(spec, '--dry-run', '--json').stdout)
+    assert main([str(spec), '--dry-run', '--json']) == 0
+    told = json.loads(capsys.readouterr().out)
     assert told['runs'] == 3 and told['seconds'] > 0.0 and not (tmp_path / 'a.zarr').exists()
     assert told['bytes'] == 3 * (13 * 8 + 1 + 1 + 8 + 4) == forecast(spec).bytes
     done = command(spec, '--output', tmp_path / 'a.zarr')
     assert done.returncode == 0 and '3 runs (initial.angular_velocity.0 3)' in done.stdout
-    assert command(spec).stderr.startswith('--output: is missing; NAME.zarr')
+    assert main([str(spec)]) == 2
+    assert capsys.readouterr().err.startswith('--output: is missing; NAME.zarr')
     spec.write_text('scene: tennis_racket\nkeep: [final]\n')
-    wrong = command(spec, '--output', tmp_path / 'b.zarr')
-    assert wrong.returncode == 2 and wrong.stderr.count('\n') == 1
+    assert main([str(spec), '--output', str(tmp_path / 'b.zarr')]) == 2
+    assert capsys.readouterr().err.count('\n') == 1
 
 
 def test_missing_package_is_one_line(monkeypatch):

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from soak import some_of
 
 from rigid_body_sim import Simulation
 from rigid_body_sim.numerics.rotations import multiply, rotate
@@ -37,8 +38,8 @@ def landed(thin, angle, method):
     return multiply(-x, -y, -z, w, *simulation.state.orientation)
 
 
-@pytest.mark.parametrize('method', ['dop8', 'taylor', 'gauss16'])
-@pytest.mark.parametrize('thin', [1.0, 1e-3, 1e-6])
+@pytest.mark.parametrize(('thin', 'method'), some_of(
+    [1.0, 1e-3, 1e-6], ['taylor', 'gauss16', 'dop8']))
 def test_its_attitude_does_not_depend_on_which_way_it_faces(thin, method):
     """Impacts magnify half an ulp of the start some ten times."""
     once = landed(thin, 0.0, method)
