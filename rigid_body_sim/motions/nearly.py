@@ -179,8 +179,8 @@ def _left_out(inertia, equal):
         j, k = (i + 1) % 3, (i + 2) % 3
         alike = [part for part in (i, j, k) if equal[part] == equal[i]]
         beyond = {j: inertia.differences[k], k: -inertia.differences[j]}    # I_i - I_j, I_i - I_k
-        mean = sum(inertia.moments[part] - equal[i] for part in alike) / len(alike)
-        found.append(mean + sum(beyond[part] for part in alike[1:]) / len(alike))
+        mean = math.fsum(inertia.moments[part] - equal[i] for part in alike) / len(alike)
+        found.append(mean + math.fsum(beyond[part] for part in alike[1:]) / len(alike))
     return found
 
 
