@@ -14,6 +14,8 @@ import pytest
 from rigid_body_sim.cli import simulate
 from rigid_body_sim.cli.scenes import describe
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.effects.drag import Drag
+from rigid_body_sim.scene.effects.torque import Torque
 from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_folder, scene_names
 
 RACKET = pathlib.Path(scene_folder(), 'tennis_racket.yaml').read_text()
@@ -260,3 +262,16 @@ def test_uniform_fields_add(fields, field, weight):
     scene = dataclasses.replace(dragged, effects=(*effects, *dragged.effects))
     assert scene.field == field
     assert scene.weight is None
+
+
+@pytest.mark.parametrize(('effects', 'classes', 'only'), [
+    ('[]', (), True), ('[]', (Drag,), True), ('[drag: {angular: 1}]', (Drag,), True),
+    ('[drag: {angular: 1}]', (), False), ('[drag: {angular: 1}]', (Torque,), False),
+    ('[drag: {angular: 1}, torque: {value: [1, 0, 0]}]', (Drag,), False),
+    ('[drag: {angular: 1}, torque: {value: [1, 0, 0]}]', (Drag, Torque), True),
+    # what does nothing does not count
+    ('[drag: {angular: 1}, torque: {value: [0, 0, 0]}]', (Drag,), True)])
+def test_what_acts_is_all_of_some_classes(effects, classes, only):
+    scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2]}\nconstraint: free\n'
+                        f'effects: {effects}\ninitial: {{}}\n')
+    assert scene.acts_only(*classes) is only

@@ -7,7 +7,7 @@ from mechanics.contact.test_touch import scene_of
 from near import near
 from scipy.spatial.transform import Rotation
 
-from rigid_body_sim.integrators.equations.contact_rest import grip_patch, jams, spins
+from rigid_body_sim.integrators.equations.contact_rest import grip_patch, jams, lies, spins
 from rigid_body_sim.integrators.equations.contact_views import UNKNOWNS
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters
 from rigid_body_sim.mechanics.contact.parameters import LOW
@@ -52,3 +52,11 @@ def test_a_patch_that_grips_takes_the_spin_about_the_normal_alone(effects):
 def test_rolling_friction_of_any_kind_jams_a_ring_that_lies_low(surface, effects, tilt, jammed):
     p = contact_parameters(scene_of(surface, ', sliding_friction: {mu: 0.6}' + effects))
     assert bool(jams(p, unknowns((np.sin(0.5 * tilt), 0.0, 0.0, np.cos(0.5 * tilt))))) is jammed
+
+
+@pytest.mark.parametrize(('surface', 'tilt', 'flat'), [
+    ('torus', 0.0, True), ('torus', np.pi, True), ('torus', 0.4, False), ('disk', 0.0, True),
+    ('disk', 0.4, False), ('sphere', 0.0, False)])
+def test_only_a_ring_can_lie_flat(surface, tilt, flat):
+    p = contact_parameters(scene_of(surface, ', sliding_friction: {mu: 0.6}'))
+    assert bool(lies(p, unknowns((np.sin(0.5 * tilt), 0.0, 0.0, np.cos(0.5 * tilt))))) is flat
