@@ -126,3 +126,44 @@ def test_lateness_is_told_in_microseconds():
     assert late in report(timing=timing)
     assert f'{late}; 499.500 Hz achieved; stood still 2 times' in report(
         timing=timing | {'achieved_rate': 499.5, 'standstills': 2})
+
+
+def told(what):
+    """Return something whose summary is what is given."""
+    return types.SimpleNamespace(summary=lambda: what)
+
+
+def mark(kind, name='', **values):
+    return types.SimpleNamespace(kind=kind, name=name, values=values)
+
+
+@pytest.mark.parametrize('known', [True, False])
+def test_the_numbers_of_a_report_are_those_that_were_measured(known):
+    history = types.SimpleNamespace(segments=[types.SimpleNamespace(rate=500.0), None], marks=[
+        mark('event', 'flip'), mark('event', 'flip'), mark('event', 'lift'), mark('strike'),
+        mark('commands'), mark('gap', ticks=3), mark('gap', ticks=4), mark('reset'),
+        mark('parameters'), mark('parameters')])
+    scene = types.SimpleNamespace(name='top')
+    source = types.SimpleNamespace(
+        history=history, namespace='/left', scene=scene if known else None, made_by='sim_node',
+        version='1.2.3', run={'method': 'exact'}, accuracy_missed=['late'])
+    motion = types.SimpleNamespace(
+        conserved=types.SimpleNamespace(name='L_z'), momentum=told({'stretches': 2}), slip=None)
+    measured = types.SimpleNamespace(
+        source=source, motion=motion if known else None, energy=told('E'), momentum=told('L'),
+        punctuality=told('t'), flips=types.SimpleNamespace(count=2) if known else None)
+    line = types.SimpleNamespace(name='n', axes='xy', source='theory', frequency=4.0)
+    found = summary.summary(
+        measured, *(types.SimpleNamespace(lines=[(line, 4.25)]), (None, {'work': [1.0, 2.0, 5.0]})
+                    ) if known else ())
+    assert found == {
+        'namespace': '/left', 'scene': 'top' if known else None, 'made_by': 'sim_node',
+        'version': '1.2.3', 'run': {'method': 'exact'}, 'accuracy_missed': ['late'], 'rate': 500.0,
+        'energy': 'E', 'angular_momentum_squared': 'L', 'round_off_floor': summary.FLOOR,
+        'flips': 2 if known else None, 'events': {'flip': 2, 'lift': 1}, 'strikes': 1,
+        'commands': 1, 'resets': 1, 'parameter_changes': 2, 'timing': 't',
+        'left_out_by_recorder': 7,
+        'momentum': {'of': 'L_z', 'stretches': 2} if known else None, 'phases': None,
+        'lines': [{'name': 'n', 'axes': 'xy', 'source': 'theory', 'predicted': 4.0,
+                   'measured': 4.25}] if known else [],
+        'ledger': {'work': 5.0} if known else None}
