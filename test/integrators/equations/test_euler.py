@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.equations.euler import lost_norm
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import STATE_SIZE, State
 
@@ -31,3 +32,12 @@ def test_what_is_written_is_what_was_read(inertia, center):
     equations.kernels.write(p, 1.5, tuple(y.tolist()), out)
     # measured: 5e-16
     assert out == pytest.approx(start, abs=4e-15)
+
+
+@pytest.mark.parametrize(('q', 'lost'), [
+    # numbers whose squares are doubles
+    ((0.5, 0.5, 0.5, 0.5), 0.0), ((0.5, 0.0, 0.0, 0.0), 0.375), ((0.0, 0.25, 0.0, 0.0), 0.46875),
+    ((0.0, 0.0, 2.0, 0.0), -1.5), ((0.0, 0.0, 0.0, 1.5), -0.625),
+    ((0.5, -0.25, 0.125, 0.75), 0.5 * (1.0 - 0.890625))])
+def test_what_a_norm_has_lost_is_half_of_what_its_square_lacks(q, lost):
+    assert lost_norm(*q) == lost

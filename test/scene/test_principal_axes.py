@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Principal axes where moments are equal: any axes of their plane will do, the nearest are taken.
+
+Angles are in radians.
+"""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigid_body_sim.scene.principal_axes import ULPS, Lost, is_slim, nearest_where_equal
+
+LOST = 1e-20, 2e-20, 3e-20
+NOTHING = [[0.0] * 3 for _ in range(3)]
+
+
+def nearest(moments, rows):
+    """Return moments, axes and what is lost, of axes given as rows."""
+    return nearest_where_equal(list(moments), [list(map(float, row)) for row in rows],
+                               Lost(list(LOST), [list(row) for row in NOTHING]))
+
+
+@pytest.mark.parametrize('angle', [0.3, -1.2, 0.7])
+@pytest.mark.parametrize('k', [0, 1, 2])
+def test_axes_in_the_plane_of_two_equal_moments_turn_to_those_of_the_body(k, angle):
+    """The third axis is tilted: nothing but its own plane may turn."""
+    moments, i, j = [2.0, 2.0, 2.0], (k + 1) % 3, (k + 2) % 3
+    moments[k] = 3.0
+    tilt = Rotation.from_rotvec(0.4 * np.eye(3)[i] - 0.2 * np.eye(3)[j])
+    rows = (tilt * Rotation.from_rotvec(angle * np.eye(3)[k])).as_matrix().T
+    found, axes, lost = nearest(moments, rows)
+    axes = np.array(axes)
+    assert found == moments
+    assert axes[k].tolist() == rows[k].tolist()
+    assert axes @ axes.T == pytest.approx(np.eye(3), abs=4e-16)    # measured: 2e-16
+    assert np.linalg.det(axes) > 0.0
+    # as much of the body's axes as the plane allows: a further turn in it would only lose
+    assert axes[i][j] - axes[j][i] == pytest.approx(0.0, abs=4e-16)
+    assert axes[i][i] + axes[j][j] > 0.0
+    assert (lost.moments[i], lost.moments[j]) == (0.0, 0.0)
+    assert lost.moments[k] == LOST[k]
+
+
+def test_what_rounding_takes_from_the_turned_axes_is_kept():
+    rows = Rotation.from_rotvec([0.1, 0.2, 0.9]).as_matrix().T
+    _, axes, lost = nearest((2.0, 2.0, 3.0), rows)
+    whole = np.array(axes, dtype=np.longdouble) + np.array(lost.vectors, dtype=np.longdouble)
+    taken = np.abs(lost.vectors[:2])
+    assert 0.0 < taken.max() < 2e-16
+    # the axes that were given are orthogonal to rounding; norms are made 1 from these
+    for row in whole[:2]:
+        assert abs(float(row @ row) - 1.0) < 5e-16
+
+
+@pytest.mark.parametrize(('second', 'equal'), [
+    (2.0 * (1.0 + 0.4 * ULPS), True), (2.0 * (1.0 + 4.0 * ULPS), False)])
+def test_moments_that_agree_to_rounding_become_their_mean(second, equal):
+    rows = Rotation.from_rotvec([0.0, 0.0, 0.5]).as_matrix().T
+    moments, axes, _ = nearest((2.0, second, 3.0), rows)
+    assert moments == ([0.5 * (2.0 + second)] * 2 if equal else [2.0, second]) + [3.0]
+    assert np.array(axes) == pytest.approx(np.eye(3) if equal else rows, abs=2e-16)
+
+
+def test_a_sphere_has_the_axes_of_the_body():
+    rows = Rotation.random(random_state=1).as_matrix().T
+    moments, axes, lost = nearest((2.0, 2.0, 2.0), rows)
+    assert (moments, axes, lost) == ([2.0] * 3, np.eye(3).tolist(), Lost([0.0] * 3, NOTHING))
+
+
+@pytest.mark.parametrize(('least', 'slim'), [
+    (0.0, False), (1e-16, False), (1e-12, True), (0.99 * 2.0 ** -10, True),
+    (1.01 * 2.0 ** -10, False)])
+def test_a_slim_body_keeps_two_moments_that_differ_by_their_rounding(least, slim):
+    assert bool(is_slim((1.0, 1.0, least))) is slim
+    rows = Rotation.from_rotvec([0.0, 0.0, 0.5]).as_matrix().T
+    moments, axes, _ = nearest((1.0, 1.0 + 2.0 ** -52, least), rows)
+    assert (axes == rows.tolist()) is slim
+    assert (moments[1] > moments[0]) is slim
