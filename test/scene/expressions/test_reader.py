@@ -141,6 +141,11 @@ def test_lengths_depths_and_powers_are_taken_up_to_their_bounds():
                              ('(', ')/t'), ('max(t, ', ')'), ('(', ' > t)')):
         with pytest.raises(BadInput, match='too deep'):
             read(f'{opening}{deepest}x{closing}', NAMES, 'here')
+    # with as many fewer as stand around them, none is too deep
+    for opening, closing, around in (
+            ('-', '', 1), ('sin(', ')', 1), ('t*(', ')', 1), ('(', ')*t', 1), ('max(t, ', ')', 1),
+            ('max(', ', t)', 1), ('where(t < ', ', 1, 0)', 2), ('where(', ' < t, 1, 0)', 2)):
+        assert 'x' in str(read(f'{opening}{deepest[around:]}x{closing}', NAMES, 'here'))
     for power in (1.001 * LARGEST_POWER, -1.001 * LARGEST_POWER):
         with pytest.raises(BadInput, match='the power'):
             read(f'x^{power}', NAMES, 'here')
