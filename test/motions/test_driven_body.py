@@ -8,7 +8,7 @@ import pytest
 from near import near
 
 from rigid_body_sim.mechanics.pulls import total_pull
-from rigid_body_sim.motions.driven_body import IN_BODY, IN_WORLD, Drive, drive
+from rigid_body_sim.motions.driven_body import IN_BODY, IN_WORLD, Drive, absorbs, drive
 from rigid_body_sim.scene.scene import parse_scene
 
 pytestmark = pytest.mark.without_numba
@@ -100,3 +100,21 @@ def test_what_has_no_closed_form_has_no_drive(inertia, torque, rotor, frame):
 def test_a_torque_and_a_rotor_off_the_axis_by_rounding_count_as_along_it(inertia):
     tiny = 1e-16
     assert drive(scene_of(inertia, (0.1 * tiny, -0.1 * tiny, 0.5), (0.0, 0.1 * tiny, 0.1)))
+
+
+@pytest.mark.parametrize(('constraint', 'center', 'effects', 'taken'), [
+    ('free', 0.0, 'torque: {value: [0, 0, 0.5]}', True),
+    ('free', 0.0, 'gravity: {g: 9.81}, torque: {value: [0, 0, 0.5]}', True),    # it falls besides
+    ('free', 0.0, 'gravity: {g: 9.81}', False), ('free', 0.0, 'drag: {angular: 1}', False),
+    ('free', 0.0, 'drag: {angular: 1}, torque: {value: [0, 0, 0.5]}', False),
+    ('pivot', 0.0, 'torque: {value: [0, 0, 0.5]}', True),
+    ('pivot', 0.0, 'gravity: {g: 9.81}, torque: {value: [0, 0, 0.5]}', True),   # no arm
+    ('pivot', 0.1, 'gravity: {g: 9.81}, torque: {value: [0, 0, 0.5]}', False),
+    ('pivot', 0.1, 'torque: {value: [0, 0, 0.5]}', True),
+    ('{hinge: {axis: [0, 0, 1]}}', 0.0, 'torque: {value: [0, 0, 0.5]}', False)])
+def test_a_force_is_no_matter_where_the_body_flies_and_is_one_where_it_is_held(
+        constraint, center, effects, taken):
+    scene = parse_scene(
+        f'scene: s\nbody: {{mass: 1, inertia: [0.3, 0.3, 0.5], center_of_mass: [0, 0, {center}]}}'
+        f'\nconstraint: {constraint}\neffects: [{effects}]\ninitial: {{}}\n')
+    assert absorbs(scene) is taken
