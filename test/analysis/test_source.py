@@ -16,7 +16,7 @@ def recording(**topics):
     """Return a recording of topics, name -> (type, number of messages)."""
     return types.SimpleNamespace(
         path='run', journal=list,
-        topics={f'/lab/{name}': types.SimpleNamespace(type=kind, count=count)
+        topics={f'/lab/{name}': types.SimpleNamespace(name=f'/lab/{name}', type=kind, count=count)
                 for name, (kind, count) in topics.items()})
 
 
@@ -33,3 +33,21 @@ def test_a_topic_counts_by_its_type_and_its_messages(topics, found, monkeypatch)
             source.sources(recording(**topics))
         return
     assert [set(one) for one in source.sources(recording(**topics))] == [found]
+
+
+def test_a_body_begins_with_the_first_message_of_any_topic_of_its_ticks(monkeypatch):
+    """The others may have lost theirs, and some messages in between."""
+    firsts, asked = {'/lab/pose': 40, '/lab/energy': 20, '/lab/angular_velocity': 30}, []
+    made = recording(**{name.rpartition('/')[2]: (source.TYPES[name.rpartition('/')[2]], count)
+                        for name, count in zip(firsts, (5, 9, 7), strict=True)})
+    monkeypatch.setattr(source, '_first_time', lambda recording, name: firsts[name])
+    monkeypatch.setattr(source, '_last_time', lambda recording, name: 100)
+    monkeypatch.setattr(source, 'journal_of', lambda path: contextlib.nullcontext())
+    monkeypatch.setattr(source, 'missed', lambda runs: [])
+    monkeypatch.setattr(source, '_run', lambda recording, topics, entries, start, end: (
+        asked.append((entries, start, end)), {'made_by': 'sim_node', 'version': '1.2'}, 'all'))
+    topics = {name.rpartition('/')[2]: name for name in firsts}
+    found = source._source(made, '/lab', topics, [{'topic': '/other/journal'}])
+    assert asked == [([], 20, 100)]
+    assert (found.start, found.end, found.ticks) == (20, 100, 9)
+    assert (found.made_by, found.version, found.history) == ('sim_node', '1.2', 'all')

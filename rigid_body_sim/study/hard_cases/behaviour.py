@@ -30,8 +30,10 @@ LEAVES = (math.log(1e300) - math.log(3.0)) / (175.0 / 12.0)
 ENDED = 100.0
 """Product of c and the time (s) after which nothing is left of a wobble."""
 SPEED = 1.5    # m/s, speed of the ball that is struck again
-RESTRUCK = 2.0 * SPEED / (7.0 * G * 0.25)
-"""Coefficient mu with which that ball rolls after 0.25 s."""
+ONSET = 250
+"""Tick at which that ball begins to roll; there are 1000 each second."""
+RESTRUCK = 2.0 * SPEED / (7.0 * G * (1e-3 * ONSET))
+"""Coefficient mu with which it does."""
 DRAWN = (1.0 - 0.4 * A * 140.0) / 1.4
 """Final speed (m/s), rolling, of a ball that starts at 1 m/s with 140 rad/s of back spin."""
 OPPOSITE = tuple((0.1 * sign, 1e100 * sign, 5e-324 * sign) for sign in (1.0, -1.0))
@@ -124,7 +126,7 @@ def frictionless():
 def restruck_at_onset():
     """Strike a ball again at the very tick at which rolling begins, twice in that tick."""
     simulation = ball(mu=RESTRUCK, initial=f'{{velocity: [{SPEED!r}, 0, 0]}}')
-    simulation.advance(250)
+    simulation.advance(ONSET)
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
     simulation.impulse(force=(0.0, 0.17 * 0.25, 0.0))
     simulation.advance(1000)
@@ -250,7 +252,7 @@ def cases():
     yield Case(7, 'restruck twice at the very tick of rolling onset',
                'two events in one tick, at the end of a phase', restruck_at_onset,
                question(Shot(RESTRUCK, (SPEED, 0.0), (0.0, 0.0, 0.0), 1.25,
-                             (SPEED * 5.0 / 7.0, 0.5 * 5.0 / 7.0), (0.25, (0.0, 0.5)))))
+                             (SPEED * 5.0 / 7.0, 0.5 * 5.0 / 7.0), (1e-3 * ONSET, (0.0, 0.5)))))
     yield Case(7, 'draw shot', 'the speed passes through zero while friction does not', draw_shot,
                question(Shot(0.2, (1.0, 0.0), (0.0, -140.0, 0.0), 3.0, (DRAWN, 0.0))))
     for name, why, c, seconds in (
