@@ -249,3 +249,13 @@ def test_a_recording_is_played_once_from_its_start_at_its_own_pace_unless_asked_
     options = replay._parser().parse_args(['run'])
     assert (options.rate, options.start, options.loop, options.topics, options.paused) == (
         1.0, 0.0, False, None, False)
+
+
+@pytest.mark.parametrize(('hidden', 'shown'), [(False, [12.35]), (True, [])])
+def test_the_bar_shows_how_much_has_been_played_unless_it_is_hidden(hidden, shown):
+    from rigid_body_sim.node.replay_node import ReplayNode
+    seen = []
+    bar = types.SimpleNamespace(disable=hidden, refresh=lambda: seen.append(bar.n))
+    ReplayNode._show(types.SimpleNamespace(
+        _progress=bar, _started=5_000_000_000, player=types.SimpleNamespace(now=17_345_678_901)))
+    assert seen == shown

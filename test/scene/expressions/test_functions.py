@@ -33,6 +33,13 @@ def test_it_is_accurate(function, reference, most, width):
     (functions.raised(0.0, -1.0), math.inf), (functions.raised(0.0, 0.0), 1.0),
     (functions.raised(-2.0, math.inf), math.inf), (functions.raised(-0.5, 1e300), 0.0),
     (functions.raised(-1.0, math.nan), math.nan), (functions.raised(0.0, math.nan), math.nan),
+    # beyond a kink they go on as odd functions
+    (functions.root_beyond(True, -4.0), -2.0), (functions.root_beyond(True, 4.0), 2.0),
+    (functions.root_beyond(False, -4.0), math.nan), (functions.root_beyond(False, 4.0), 2.0),
+    (functions.raised_beyond(True, -4.0, 1.5), -8.0),
+    (functions.raised_beyond(True, 4.0, 1.5), 8.0),
+    (functions.raised_beyond(False, -4.0, 1.5), math.nan),
+    (functions.raised_beyond(False, 4.0, 1.5), 8.0),
     (functions.side(0.0, 2.0), 1.0), (functions.side(0.0, -2.0), -1.0),
     (functions.side(0.0, 0.0), 0.0), (functions.side(0.0, math.nan), 0.0),
     (functions.side(1.0, -2.0), 1.0), (functions.side(-1.0, 2.0), -1.0)])
