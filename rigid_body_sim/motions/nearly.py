@@ -173,7 +173,11 @@ def _kicks(inertia, equal, rises, sums):
 
 
 def _left_out(inertia, equal):
-    """Return the e of each moment, kg m^2: what it has beyond the one that is taken for it."""
+    """Return the e of each moment, kg m^2: what it has beyond the one that is taken for it.
+
+    It is what the mean of the moments made equal has, and what this one has beyond their mean: the
+    differences know of that also what rounding lost.
+    """
     found = []
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3

@@ -80,7 +80,7 @@ def has_phases(scene):
 def _pulls(scene):
     """Return the Pulls of the effects of a scene that have series.
 
-    Which parts they have does not depend on the time; their numbers are those of none.
+    Which parts they have does not depend on the time; their numbers are those before any.
     """
     return [effect.series(scene.frame, -np.inf) for effect in scene.effects
             if effect.acting is not None and effect.series is not None]
