@@ -140,7 +140,7 @@ class Equations:
         self.write = f'{self.kernels.__name__}:write'
         self._equation, self._held = self._equation_parameters(), {}
         self._fixed = (
-            hinged.PARAMETERS.array(hinged.HingedParameters(self._equation, hinged.NO_START))
+            hinged.PARAMETERS.array(hinged.HingedParameters(self._equation, hinged.NO_ATTITUDE))
             if self.on_hinge else euler.EQUATION.array(self._equation))
         self.fixed_count = fixed
 

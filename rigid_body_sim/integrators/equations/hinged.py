@@ -44,7 +44,7 @@ class HingedParameters(NamedTuple):
     attitude: Quaternion            # q0, at the start
 
 
-NO_START = 0.0, 0.0, 0.0, 0.0    # for an attitude
+NO_ATTITUDE = 0.0, 0.0, 0.0, 0.0    # before a start
 PARAMETERS = layout(HingedParameters)
 load_omega = STATE.part('angular_velocity').load
 load_axis = BODY.part('hinge_axis').load
