@@ -57,6 +57,7 @@ ELSEWHERE = ('study/precision/peers/', 'numerics/make_functions.py', 'study/prec
 WANTED = 0.95
 PATIENCE = 120      # s, a test; the tests next to a change take seconds
 LONGEST = 1800      # s, all tests of a stage
+FEW = 12            # files of tests that import what is changed, and are near
 AT_FIRST = 15.0     # s, of tests and of digests that run the line, before the others of them
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
@@ -334,8 +335,12 @@ def why_equivalent(mutant, table):
 
 # ---------------------------------------------------------------------------- what is run
 
-def stages(file, root=ROOT):
-    """Return lists of tests that bear on a file of the package, the nearest first."""
+def stages(file, root=ROOT, near=False):
+    """Return lists of tests that bear on a file of the package, the nearest first.
+
+    Near are the tests of its name, a few of its room that import it, and the digests; where there
+    are no such tests, those of its folder and its room that do not take minutes.
+    """
     parts = pathlib.PurePath(file).with_suffix('').parts[1:]
     room, stem, tests = parts[0], parts[-1], root / 'test'
     module = '.'.join((PACKAGE, *parts)).removesuffix('.__init__')
@@ -355,7 +360,13 @@ def stages(file, root=ROOT):
         [path for path in importing if path not in of_room]]
     lists = [[str(path.relative_to(root)) for path in paths] for paths in lists]
     quick = [[path for path in paths if path not in SLOW] for paths in lists]
-    found = [quick[0], [test for test in wider if test == DIGESTS], *quick[1:],
+    digests = [test for test in wider if test == DIGESTS]
+    if near:
+        folder = tests.joinpath(*parts[:-1])
+        beside = sorted(quick[2], key=lambda path: root.joinpath(path).parent != folder)
+        last = [] if quick[0] or quick[1] else beside
+        return [stage for stage in (quick[0], quick[1][:FEW], digests, last) if stage]
+    found = [quick[0], digests, *quick[1:],
              [path for paths in lists for path in paths if path in SLOW],
              *([test] for test in wider if test != DIGESTS)]
     return [stage for stage in found if stage]
@@ -370,7 +381,8 @@ def attempts(mutant, near=False):
     """Return what is run for a mutant, in turn: chosen tests and digests, then the stages.
 
     If only what is near is wanted, the quickest of the chosen are followed by the tests of its
-    room that are not noted; those of a kernel by the tests that have its name.
+    room that are not noted; those of a kernel by the tests that have its name. Where nothing is
+    noted, it is the stages that are near.
     """
     noted = covering.covering(mutant.file, mutant.begin, mutant.end)
     noted = dict(sorted(noted.items(), key=lambda item: item[1]))
@@ -383,9 +395,9 @@ def attempts(mutant, near=False):
     (first, later), (digests, more) = _shared_out(tests), _shared_out(digests)
     found = [first, digests, more, later] if beside else [digests, first, more, later]
     found = [one for one in found if one and not (near and one in (more, later))]
-    if not near:
-        return found + stages(mutant.file)
-    of_own = stages(mutant.file)[:1] if found and in_kernels(mutant.file) else [
+    if not (near and found):
+        return found + stages(mutant.file, near=near)
+    of_own = stages(mutant.file)[:1] if in_kernels(mutant.file) else [
         stage for stage in stages(mutant.file) if not set(stage) & set(WIDER.get(room, ()))]
     left = [[path for path in stage if path not in (*covering.noted_files(), *FAR)]
             for stage in of_own]

@@ -91,3 +91,15 @@ def test_what_bears_on_a_file_begins_with_its_own_test():
     for path in chance.sample(sorted((mutants.ROOT / 'rigid_body_sim').rglob('*.py')), 20):
         for stage in mutants.stages(str(path.relative_to(mutants.ROOT))):
             assert stage
+
+
+def test_near_are_the_tests_of_its_name_a_few_that_import_it_and_the_digests():
+    files = ('motions/nearly.py', 'scene/effects/spring.py', 'recording/mcap/scan.py')
+    of_name, of_folder, of_room = (
+        mutants.stages(f'rigid_body_sim/{file}', near=True) for file in files)
+    assert of_name == [['test/motions/test_nearly.py'], [mutants.DIGESTS]]
+    assert of_folder[0] == [mutants.DIGESTS]    # no test has its name: its folder, then its room
+    assert of_folder[1][0].startswith('test/scene/effects/')
+    assert of_folder[1][-1].startswith('test/scene/test_')
+    assert of_room[0][0].startswith('test/recording/mcap/')
+    assert len(mutants.stages('rigid_body_sim/scene/scene.py', near=True)[1]) == mutants.FEW
