@@ -2,6 +2,7 @@
 """The pages: their numbers are those of check_scenes, and pictures, links and commands exist."""
 
 import ast
+import importlib
 import os
 import pathlib
 import re
@@ -22,8 +23,9 @@ from rigid_body_sim.scene.scene import load_scene, scene_names
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
 sys.path.insert(0, str(DOCS))
-import make_reference  # noqa: E402  (docs/ is no package)
-from figures import tables  # noqa: E402
+import make_figures  # noqa: E402  (docs/ is no package)
+import make_reference  # noqa: E402
+from figures import page_tables, tables  # noqa: E402
 
 README = DOCS.parent / 'README.md'
 PAGES = sorted(DOCS.rglob('*.md'))
@@ -68,7 +70,7 @@ def test_every_scene_has_a_page():
 COST = re.compile(r'\d\s?(?:us|µs|ns)\b|\b(?:a|\d[\d.]*) microseconds?|\d CPU (?:s\b|seconds|ms)'
                   r'|\d (?:%|s) of (?:a core|CPU)|million (?:states|messages|runs)')
 COMMAND = re.compile(r'bench/\w+\.py|make [a-z]|python -m rigid_body_sim')
-PROCESSOR, DAY = re.compile(r'Zen 5|znver5'), re.compile(r'November 2026|2026-\d\d-\d\d')
+PROCESSOR, DAY = re.compile(r'Zen [35]|znver[35]'), re.compile(r'November 2026|2026-\d\d-\d\d')
 
 
 def _names_its_machine(text):
@@ -89,9 +91,38 @@ def test_times_rest_on_a_processor_a_day_and_a_command_that_are_named(path):
 
 
 def test_a_second_machine_is_measured_where_methods_are_compared():
-    methods, accuracy = ((DOCS / f'{page}.md').read_text() for page in ('methods', 'accuracy'))
-    assert '| | AVX-512 | AVX2 | ratio |' in methods
-    assert '(methods.md#and-on-another-processor)' in accuracy
+    other, many, accuracy = ((DOCS / f'{page}.md').read_text() for page in (
+        'methods/another_processor', 'methods/many_bodies', 'accuracy'))
+    assert '| | AVX-512 | AVX2 | ratio |' in other
+    assert 'Zen 5' in many and 'Zen 3' in many
+    assert '(methods/another_processor.md)' in accuracy
+
+
+WITHOUT_FIGURE = 'closed_forms', 'end_of_a_run', 'lost'    # tables of words
+
+
+@pytest.mark.parametrize('path', [
+    DOCS / 'methods.md', *(path for path in sorted((DOCS / 'methods').glob('*.md'))
+                           if path.stem not in WITHOUT_FIGURE)], ids=lambda path: path.stem)
+def test_a_page_of_costs_asks_one_question_and_ends_in_a_figure(path):
+    text = path.read_text()
+    assert re.match(r'# .*\?\n', text) and len(text.splitlines()) <= 100
+    picture, caption = re.search(r'images/(\w+)\.png\)\n\n\*((?:.+\n)+)\Z', text).groups()
+    assert picture in make_figures.DRAWN and '`make figures`' in caption
+
+
+def test_figures_of_costs_draw_the_numbers_of_their_tables():
+    assert page_tables.numbers('82 (0.43)') == [82.0, 0.43]
+    assert page_tables.numbers('1.13 (1e-4)') == [1.13, 1e-4]
+    assert page_tables.numbers('0.39* (not reached)') == [0.39]
+    assert page_tables.groups([['a', 'x', '1'], ['', 'y', '2'], ['b', 'x', '3']]) == {
+        'a': {'x': ['1'], 'y': ['2']}, 'b': {'x': ['3']}}
+    figure = importlib.import_module('figures.cost_many_bodies').draw()
+    found = {tuple(line.get_xydata()[0]) for line in figure.axes[0].lines
+             if len(line.get_xdata()) == 1}
+    [row] = [row for row in page_tables.table('many_bodies', 1) if row[0] == 'damped hinge']
+    ours, theirs = page_tables.numbers(row[1])
+    assert (ours / theirs, 0.0) in found    # the last row is the lowest
 
 
 def anchors(text):

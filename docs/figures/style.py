@@ -5,6 +5,7 @@ import pathlib
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, NullLocator
 
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -38,6 +39,13 @@ def label(axes, x, y, legend=True, **options):
     axes.set_ylabel(y)
     if legend:
         axes.legend(**{'frameon': False, 'fontsize': 9, 'handlelength': 2.5} | options)
+
+
+def plain_ticks(axis, ticks):
+    """Give a logarithmic axis (``axes.xaxis`` or ``axes.yaxis``) ticks in plain numbers."""
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_major_formatter('{x:g}')
+    axis.set_minor_locator(NullLocator())
 
 
 def run(name, *overrides, method='auto'):
