@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make the pictures and the tables of docs/accuracy.md, and the README's picture.
+"""Make the pictures and the tables of docs/accuracy, and the README's picture.
 
 They show what `work_precision --suite --peers --output DIR` wrote.
 
@@ -8,7 +8,8 @@ They show what `work_precision --suite --peers --output DIR` wrote.
     .venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
     .venv/bin/python docs/make_accuracy.py study-full/work_precision.json
 
-The tables stand between ``<!-- work_precision -->``, ``<!-- on_a_plane -->`` and ``<!-- end -->``.
+The tables stand in problems.md between ``<!-- work_precision -->`` and ``<!-- end -->``, and in
+plane.md from ``<!-- on_a_plane -->`` on.
 `make study-full` does both. The arguments may be several files, studies of single problems for
 example; the last one with a problem counts. docs/work_precision.json may be one of them: what it
 has stands.
@@ -161,12 +162,12 @@ def main(*paths):
     found = {'studies': [study | {'problems': of} for number, study in enumerate(studies)
                          if (of := [name for name in names if from_study[name] == number])],
              'results': results}
-    page = DOCS / 'accuracy.md'
-    said = page.read_text()
-    for name, made in (('work_precision', text(found)), ('on_a_plane', on_a_plane(found))):
+    for page, name, made in (('problems', 'work_precision', text(found)),
+                             ('plane', 'on_a_plane', on_a_plane(found))):
+        path = DOCS / 'accuracy' / f'{page}.md'
+        said = path.read_text()
         begin = said.index(f'<!-- {name} -->\n') + len(f'<!-- {name} -->\n')
-        said = said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):]
-    page.write_text(said)
+        path.write_text(said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):])
     kept = json.dumps(_short(found), separators=(',', ':'))
     DOCS.joinpath('work_precision.json').write_text(kept + '\n')
     for name, chosen in (('work_precision', suite.QUICK),

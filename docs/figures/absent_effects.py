@@ -9,7 +9,7 @@ from figures.style import BLUE, GREY, label, panels
 
 def draw():
     """Return the figure."""
-    rows = table('absent_effects')
+    rows = table('methods/absent_effects')
     figure, [axes] = panels(height=2.8)
     places = np.arange(len(rows))[::-1]
     for shift, place, title, bar in ((0.2, 1, 'all effects known', {'color': GREY, 'hatch': '//'}),

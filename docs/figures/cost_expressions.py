@@ -11,7 +11,7 @@ TITLES = {'on a spring': 'spring', 'gravity gradient': 'gravity gradient',
 
 def draw():
     """Return the figure."""
-    rows = groups(table('expressions'))
+    rows = groups(table('methods/expressions'))
     figure, all_axes = panels(len(TITLES), height=3.0, sharey=True)
     for axes, (begin, title) in zip(all_axes, TITLES.items(), strict=True):
         for method, cells in rows[next(one for one in rows if one.startswith(begin))].items():

@@ -13,7 +13,7 @@ def draw():
     """Return the figure."""
     figure, both = panels(2, height=3.6, sharey=True, sharex=True)
     for axes, (processor, place) in zip(both, PLACES.items(), strict=True):
-        rows = table('many_bodies', place)
+        rows = table('methods/many_bodies', place)
         for row, (_, *cells) in enumerate(reversed(rows)):
             for cell, mark in zip(cells, MARKS.values(), strict=True):
                 ours, *theirs = numbers(cell)

@@ -10,7 +10,7 @@ SHOWN = 'tippe top', 'rattleback', "Euler's disk", 'Routh sphere'
 
 def draw():
     """Return the figure."""
-    rows = groups(table('plane'))
+    rows = groups(table('methods/plane'))
     figure, all_axes = panels(len(SHOWN), height=3.0, sharey=True)
     for axes, name in zip(all_axes, SHOWN, strict=True):
         title = next(title for title in rows if title.startswith(name))

@@ -7,7 +7,7 @@ from figures.style import BLACK, BLUE, label, panels
 
 def draw():
     """Return the figure."""
-    rows, names = table('another_processor'), ['']
+    rows, names = table('methods/another_processor'), ['']
     for title, *_ in rows:    # some rows go on with what a row above says
         if title.startswith('to '):
             title = names[-1].replace('to 1e-6', title)

@@ -10,7 +10,7 @@ DURATIONS = '0.1 s', '1 s', '5 s'
 
 def draw():
     """Return the figure."""
-    rows = table('short_runs')
+    rows = table('methods/short_runs')
     figure, three = panels(3, height=3.8, sharey=True, sharex=True)
     for place, (axes, duration) in enumerate(zip(three, DURATIONS, strict=True)):
         for row, (_, *cells) in enumerate(reversed(rows)):

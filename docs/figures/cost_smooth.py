@@ -17,7 +17,7 @@ def draw():
     """Return the figure."""
     figure, [axes] = panels()
     named = set()
-    for title, methods in groups(table('smooth')).items():
+    for title, methods in groups(table('methods/smooth')).items():
         kind = next(one for one in KINDS if title.startswith(one))
         ratios = [found[1] if len(found := numbers(cell)) == 2 else math.nan
                   for cell in methods['taylor']]

@@ -9,7 +9,7 @@ from figures.style import BLUE, GREY, label, panels
 
 def draw():
     """Return the figure."""
-    rows = table('first_run')
+    rows = table('methods/first_run')
     figure, [axes] = panels(height=3.2)
     places = np.arange(len(rows))[::-1]
     for shift, place, title, bar in (

@@ -12,7 +12,7 @@ LINES = {'taylor': {'color': BLUE, 'marker': 'o'},
 
 def draw():
     """Return the figure."""
-    rows = groups(table('smooth'))
+    rows = groups(table('methods/smooth'))
     figure, both = panels(2)
     for axes, title in zip(both, ('asymmetric top 1, 20 s', 'driven body, 20 s'), strict=True):
         for method, cells in rows[title].items():

@@ -10,8 +10,8 @@ NUMBER = re.compile(r'\d+\.?\d*(?:e[-+]?\d+)?')
 
 
 def table(page, place=0):
-    """Return the rows of a table of docs/methods, lists of cells, without its head."""
-    text = (DOCS / 'methods' / f'{page}.md').read_text()
+    """Return the rows of a table of a page (``methods/smooth``): lists of cells, no head."""
+    text = (DOCS / f'{page}.md').read_text()
     found = re.findall(r'(?:^\|.*\n)+', text, re.MULTILINE)[place]
     return [[cell.strip() for cell in line.strip().strip('|').split('|')]
             for line in found.splitlines()[2:]]

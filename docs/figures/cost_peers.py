@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Our time over that of the best peer, for each problem of the suite and each accuracy."""
+
+from figures.marks import MARKS, name
+from figures.page_tables import numbers, table
+from figures.style import BLACK, label, panels, plain_ticks
+
+
+def draw():
+    """Return the figure."""
+    ours, ratios = None, {}
+    for title, *cells in table('accuracy/problems'):
+        if title.endswith(': ours'):
+            problem, ours = title.removesuffix(': ours').strip('*'), cells
+        elif title == 'best peer':
+            ratios[problem] = [    # a peer may not get there
+                numbers(our)[0] / numbers(their)[0] if numbers(their) else None
+                for our, their in zip(ours, cells, strict=True)]
+    figure, [axes] = panels(height=4.2)
+    for row, of in enumerate(reversed(ratios.values())):
+        for ratio, mark in zip(of, MARKS.values(), strict=True):
+            if ratio is not None:
+                axes.plot(ratio, row, **mark)
+    axes.axvline(1.0, color=BLACK, linewidth=0.8)
+    axes.set_xscale('log')
+    plain_ticks(axes.xaxis, (0.0001, 0.001, 0.01, 0.1, 1))
+    axes.set_yticks(range(len(ratios)), list(reversed(ratios)))
+    for accuracy, mark in MARKS.items():
+        axes.plot([], [], label=name(accuracy), **mark)
+    label(axes, 'time over that of the best peer', '', loc='lower left')
+    return figure
