@@ -119,7 +119,7 @@ study-check: .venv-peers/stamp ## the harness beside published figures of peers:
 bench-choice: .venv/run.stamp ## what auto chooses on scenes outside its table: errors and cost
 	.venv/bin/python bench/choice.py
 
-study-full: .venv-peers/stamp ## the whole suite with the peers, in study-full/; docs/accuracy.md and docs/hard_cases.md anew
+study-full: .venv-peers/stamp ## the whole suite with the peers, in study-full/; docs/accuracy and docs/hard_cases.md anew
 	.venv-peers/bin/python -m rigid_body_sim work_precision --suite --peers --output study-full
 	.venv-peers/bin/python docs/make_accuracy.py study-full/work_precision.json
 	.venv-peers/bin/python -m rigid_body_sim hard_cases --peers --json > study-full/hard_cases.json
