@@ -113,6 +113,24 @@ def test_a_page_of_costs_asks_one_question_and_ends_in_a_figure(path):
     assert (picture in make_figures.DRAWN) == ('`make figures`' in caption)
 
 
+def test_the_headline_shows_ours_and_the_best_peer_of_each_of_three_programs():
+    headline = importlib.import_module('figures.headline')
+
+    def line(name, *points):
+        return {'name': name, 'points': [{'cpu': {'median': time}, 'error': error}
+                                         for time, error in points]}
+    found = headline.best([
+        line('slow RK4', (9.0, 1e-9)), line('quick', (3.0, 1e-4), (1.0, 1e-2)),
+        line('quick, 80 bit', (8.0, 1e-15)), line('coarse', (0.1, 0.5)),
+        line('slow RK5', (4.0, 0.0))])
+    assert [one['name'] for one in found] == ['quick', 'slow RK5']    # coarse is not good enough
+    [axes] = headline.draw().axes
+    assert [text.get_text() for text in axes.texts][1:] == [
+        'closed form, at any time and accuracy', 'taylor, stepped', 'heyoka', 'numba RK4',
+        'MuJoCo RK4']
+    assert '(docs/images/headline.png)' in README.read_text()
+
+
 def test_figures_of_costs_draw_the_numbers_of_their_tables():
     assert page_tables.numbers('82 (0.43)') == [82.0, 0.43]
     assert page_tables.numbers('1.13 (1e-4)') == [1.13, 1e-4]
