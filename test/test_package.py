@@ -35,8 +35,9 @@ OPTIONAL = {'distributed', 'llvmlite', 'lz4', 'mcap', 'numba', 'pandas', 'plotly
 COMES_WITH = {'llvmlite': 'numba', 'websockets': 'viser'}
 # import names of what work_precision --peers and hard_cases --peers measure; requirements/peers.in
 # lists them
-PEERS = {'Basilisk': 'bsk', 'exudyn': 'exudyn', 'heyoka': 'heyoka', 'mujoco': 'mujoco',
-         'pinocchio': 'pin', 'pybullet': 'pybullet', 'pydrake': 'drake'}
+PEERS = {'Basilisk': 'bsk', 'exudyn': 'exudyn', 'heyoka': 'heyoka', 'jpype': 'JPype1',
+         'mujoco': 'mujoco', 'orekit_jpype': 'orekit-jpype', 'pinocchio': 'pin',
+         'pybullet': 'pybullet', 'pydrake': 'drake'}
 
 
 def dependencies(tag):

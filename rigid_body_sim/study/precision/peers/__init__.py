@@ -24,6 +24,7 @@ MODULES = (
     'pybullet_engine',
     'pinocchio_engine',
     'basilisk_engine',
+    'orekit_engine',
 )
 
 
