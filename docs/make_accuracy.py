@@ -12,7 +12,8 @@ The tables stand in problems.md between ``<!-- work_precision -->`` and ``<!-- e
 plane.md from ``<!-- on_a_plane -->`` on.
 `make study-full` does both. The arguments may be several files, studies of single problems for
 example; the last one with a problem counts. docs/work_precision.json may be one of them: what it
-has stands.
+has stands. With ``--second`` they are studies on a second processor: second_processor.md has their
+table, docs/work_precision_second.json their data.
 """
 
 import json
@@ -145,9 +146,28 @@ def _short(value):
     return float(f'{value:.6g}') if isinstance(value, float) else value
 
 
-def main(*paths):
-    """Write the page, the pictures and the data."""
-    read = [json.loads(pathlib.Path(path).read_text()) for path in paths]
+def main(*arguments):
+    """Write the pages, the pictures and the data; or those of the second processor."""
+    second = '--second' in arguments
+    found = _joined([json.loads(pathlib.Path(path).read_text())
+                     for path in arguments if path != '--second'])
+    if second:
+        _write('second_processor', 'work_precision', text(found))
+        _keep('work_precision_second', found)
+        return
+    _write('problems', 'work_precision', text(found))
+    _write('plane', 'on_a_plane', on_a_plane(found))
+    _keep('work_precision', found)
+    for name, chosen in (('work_precision', suite.QUICK),
+                         ('work_precision_suite', set(suite.NAMES) - set(suite.QUICK)),
+                         ('work_precision_plane', suite.ON_A_PLANE)):
+        drawn = [result for result in found['results'] if result['problem'] in chosen]
+        figure.draw(drawn).savefig(
+            DOCS / 'images' / f'{name}.png', dpi=150, metadata={'Software': None})
+
+
+def _joined(read):
+    """Return the results of several files, the last of each problem, with their studies."""
     measured, from_study, studies = {}, {}, []
     for one in read:
         # each study with the problems that it measured; a file of these pages has several
@@ -158,24 +178,23 @@ def main(*paths):
             studies.append(study)
         measured |= {result['problem']: result for result in one['results']}
     names = [name for name in suite.NAMES + suite.ON_A_PLANE if name in measured]
-    results = [measured[name] for name in names]
-    found = {'studies': [study | {'problems': of} for number, study in enumerate(studies)
-                         if (of := [name for name in names if from_study[name] == number])],
-             'results': results}
-    for page, name, made in (('problems', 'work_precision', text(found)),
-                             ('plane', 'on_a_plane', on_a_plane(found))):
-        path = DOCS / 'accuracy' / f'{page}.md'
-        said = path.read_text()
-        begin = said.index(f'<!-- {name} -->\n') + len(f'<!-- {name} -->\n')
-        path.write_text(said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):])
+    return {'studies': [study | {'problems': of} for number, study in enumerate(studies)
+                        if (of := [name for name in names if from_study[name] == number])],
+            'results': [measured[name] for name in names]}
+
+
+def _write(page, mark, made):
+    """Write a table into its place on a page."""
+    path = DOCS / 'accuracy' / f'{page}.md'
+    said = path.read_text()
+    begin = said.index(f'<!-- {mark} -->\n') + len(f'<!-- {mark} -->\n')
+    path.write_text(said[:begin] + made + '\n' + said[said.index('<!-- end -->', begin):])
+
+
+def _keep(name, found):
+    """Keep the data that a page shows."""
     kept = json.dumps(_short(found), separators=(',', ':'))
-    DOCS.joinpath('work_precision.json').write_text(kept + '\n')
-    for name, chosen in (('work_precision', suite.QUICK),
-                         ('work_precision_suite', set(suite.NAMES) - set(suite.QUICK)),
-                         ('work_precision_plane', suite.ON_A_PLANE)):
-        drawn = [result for result in results if result['problem'] in chosen]
-        figure.draw(drawn).savefig(
-            DOCS / 'images' / f'{name}.png', dpi=150, metadata={'Software': None})
+    (DOCS / f'{name}.json').write_text(kept + '\n')
 
 
 if __name__ == '__main__':

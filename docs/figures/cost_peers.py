@@ -6,10 +6,10 @@ from figures.page_tables import numbers, table
 from figures.style import BLACK, label, panels, plain_ticks
 
 
-def draw():
-    """Return the figure."""
+def draw(page='accuracy/problems'):
+    """Return the figure of a page's table."""
     ours, ratios = None, {}
-    for title, *cells in table('accuracy/problems'):
+    for title, *cells in table(page):
         if title.endswith(': ours'):
             problem, ours = title.removesuffix(': ours').strip('*'), cells
         elif title == 'best peer':
