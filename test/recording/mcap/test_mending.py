@@ -32,7 +32,7 @@ FORMS = {'uncompressed': CompressionType.NONE, 'lz4': CompressionType.LZ4,
          'zstd': CompressionType.ZSTD, 'no chunks': None}
 
 
-def small(form):
+def small(form, sizes=(8, 9, 10)):
     """Return the bytes of a file with 24 messages on two channels, eight in a chunk."""
     stream, draw = io.BytesIO(), random.Random(1)
     writer = Writer(stream, chunk_size=300, compression=FORMS[form] or CompressionType.NONE,
@@ -41,7 +41,7 @@ def small(form):
     schema = writer.register_schema('a/B', 'ros2msg', b'float64 data')
     channels = [writer.register_channel(f'/{name}', 'cdr', schema) for name in 'xy']
     for k in range(COUNT):
-        writer.add_message(channels[k % 2], 1000 + 10 * k, draw.randbytes(8 + k % 3),
+        writer.add_message(channels[k % 2], 1000 + 10 * k, draw.randbytes(sizes[k % len(sizes)]),
                            2000 + 10 * k, k // 2)
     writer.finish()
     return stream.getvalue()
@@ -181,6 +181,17 @@ def test_a_file_cut_within_the_record_that_ends_the_data_keeps_its_last_message(
     [begin] = [begin for opcode, begin, _ in records(content) if opcode == Opcode.DATA_END]
     for size in range(begin, begin + 13):
         assert mended(content[:size])[0] == messages(content), size
+
+
+@pytest.mark.parametrize('place', [0, 7, -1])
+def test_a_message_without_data_whose_opcode_is_wrong_is_kept(place):
+    """Also where the file is cut behind it: its length says that it is whole."""
+    content = small('no chunks', sizes=(0,))
+    kept = [(begin, end) for opcode, begin, end in records(content) if opcode == Opcode.MESSAGE]
+    begin, end = kept[place]
+    flipped = bytearray(content if place >= 0 else content[:end])
+    flipped[begin] = Opcode.CHANNEL
+    assert mended(flipped)[0] == messages(content)
 
 
 @pytest.mark.parametrize('form', FORMS)
