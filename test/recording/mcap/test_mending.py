@@ -10,6 +10,7 @@ import io
 import random
 import struct
 import tempfile
+import types
 
 import pytest
 import zstandard
@@ -21,9 +22,15 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 from soak import SOAK
 
+from rigid_body_sim.recording.mcap import mending
+from rigid_body_sim.recording.mcap.bytes import MemoryBytes
+from rigid_body_sim.recording.mcap.chunks import message
 from rigid_body_sim.recording.mcap.compression import compressor, zstd_length
+from rigid_body_sim.recording.mcap.forms import record_end
+from rigid_body_sim.recording.mcap.found import Damage
 from rigid_body_sim.recording.mcap.mending import Losses, mend
 from rigid_body_sim.recording.mcap.records import HEAD
+from rigid_body_sim.recording.mcap.walk import heads, walk
 
 COUNT = 24
 ERRORS = (McapError, zstandard.ZstdError, EOFError, ValueError, LookupError, RuntimeError,
@@ -206,6 +213,72 @@ def test_a_file_cut_anywhere_keeps_what_was_there(form):
         assert losses is not None
         assert losses.doubtful == 0
     assert kept == COUNT
+
+
+def sequences(*numbers, channel=1, start=0):
+    """Return what a FoundChunk says of messages of one channel, a ns apart."""
+    records = b''.join(message(channel, number, start + k, 0, b'')
+                       for k, number in enumerate(numbers))
+    found = heads(records, walk(records)[0])
+    return types.SimpleNamespace(heads=found, counts={channel: len(numbers)},
+                                 times=found['log_time'])
+
+
+@pytest.mark.parametrize(('before', 'after', 'more', 'expected'), [
+    ((3, 4, 5), (9, 10), {}, (3, 'counted')),
+    ((2**32 - 2, 2**32 - 1), (1, 2), {}, (1, 'counted')),
+    ((3, 4, 6), (9, 10), {}, (0, 'unknown')),
+    ((3, 4, 6), (9, 10), {'lost_bytes': 0}, (0, 'counted')),
+    ((3, 4, 5), (9,), {'claimed': 100}, (4, 'estimated')),
+    ((3, 4, 5), (9, 10), {'claimed': 100, 'kept': 1}, (4, 'estimated')),
+    ((3, 4, 5), (9, 10), {'lost': 2}, (2, 'counted'))])
+def test_what_a_damage_cost_is_counted_by_sequence_or_estimated_by_size(
+        before, after, more, expected):
+    """100 bytes at 25 a message are four; sequence numbers that leave out some do not count."""
+    damage = Damage(**{'lost_bytes': 50, **more}, before=sequences(*before),
+                    after=sequences(*after))
+    assert mending._count(damage, types.SimpleNamespace(mean_message=25.0)) == expected
+
+
+def test_a_channel_that_is_not_on_both_sides_of_a_damage_does_not_keep_the_others_from_counting():
+    before, after = sequences(3, 4, 5), sequences(9, 10)
+    before.counts[2], after.counts[3] = 1, 1
+    damage, scan = Damage(50, before=before, after=after), types.SimpleNamespace(mean_message=0.0)
+    assert mending._count(damage, scan) == (3, 'counted')
+    after.counts[2] = 1    # on both sides, and too short to tell whether its numbers count
+    assert mending._count(damage, scan) == (0, 'unknown')
+
+
+@pytest.mark.parametrize(('of', 'last', 'expected'), [
+    ({'lost_bytes': 50}, 0, 98),
+    ({'lost_bytes': 0, 'claimed': 7}, 0, 98),
+    ({'lost_bytes': 0, 'lost': 7}, 0, 98),
+    ({'lost_bytes': 0}, 0, 0),
+    ({'lost_bytes': 50, 'after': None}, 170, 68),
+    ({'lost_bytes': 50, 'after': None, 'until': 160}, 0, 58),
+    ({'lost_bytes': 50, 'after': None, 'until': 10**15}, 0, 0),
+    ({'lost_bytes': 50, 'before': None}, 0, 190)])
+def test_a_hole_is_the_time_between_the_messages_around_it(of, last, expected):
+    """Those before end at 102 ns, those after begin at 200; the file begins at 10."""
+    damage = Damage(**{'before': sequences(1, 2, 3, start=100),
+                       'after': sequences(7, 8, start=200), **of})
+    scan = types.SimpleNamespace(
+        damages=[damage], contents=types.SimpleNamespace(start_time=10, end_time=400))
+    assert mending._hole(damage, scan, last) == expected
+
+
+@pytest.mark.parametrize('wrong', [0, 1, -1])
+def test_an_attachment_is_one_if_its_length_and_that_of_its_data_agree(wrong):
+    stream = io.BytesIO()
+    writer = Writer(stream, use_chunking=False)
+    writer.start('ros2', 'theirs')
+    writer.add_attachment(3, 5, 'name', 'text/plain', b'some data')
+    writer.finish()
+    content = bytearray(stream.getvalue())
+    [(begin, end)] = [(begin, end) for opcode, begin, end in records(content)
+                      if opcode == Opcode.ATTACHMENT]
+    content[end - 4 - 9 - 8] += wrong    # checksum, data, length of the data
+    assert record_end(MemoryBytes(bytes(content)), begin) == (0 if wrong else end)
 
 
 def test_a_whole_file_is_left_alone():
