@@ -17,9 +17,9 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.records import Channel, Message
+from mcap.records import Channel, Chunk, Message
 from mcap.stream_reader import StreamReader
-from mcap.writer import CompressionType, Writer
+from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from soak import SOAK
 
 from rigid_body_sim.recording.mcap import mending
@@ -39,11 +39,11 @@ FORMS = {'uncompressed': CompressionType.NONE, 'lz4': CompressionType.LZ4,
          'zstd': CompressionType.ZSTD, 'no chunks': None}
 
 
-def small(form, sizes=(8, 9, 10)):
+def small(form, sizes=(8, 9, 10), **options):
     """Return the bytes of a file with 24 messages on two channels, eight in a chunk."""
     stream, draw = io.BytesIO(), random.Random(1)
     writer = Writer(stream, chunk_size=300, compression=FORMS[form] or CompressionType.NONE,
-                    use_chunking=FORMS[form] is not None)
+                    use_chunking=FORMS[form] is not None, **options)
     writer.start('ros2', 'theirs')
     schema = writer.register_schema('a/B', 'ros2msg', b'float64 data')
     channels = [writer.register_channel(f'/{name}', 'cdr', schema) for name in 'xy']
@@ -281,11 +281,57 @@ def test_an_attachment_is_one_if_its_length_and_that_of_its_data_agree(wrong):
     assert record_end(MemoryBytes(bytes(content)), begin) == (0 if wrong else end)
 
 
-def test_a_whole_file_is_left_alone():
+@pytest.mark.parametrize('options', [{}, {'enable_crcs': False}, {'use_statistics': False}])
+def test_a_whole_file_is_left_alone(options):
     for form in FORMS:
-        found, losses = mended(small(form))
+        found, losses = mended(small(form, **options))
         assert len(found) == COUNT
         assert losses is None
+
+
+def test_a_file_of_which_nothing_but_the_magic_is_left_is_finished_in_place():
+    with tempfile.TemporaryFile() as stream:
+        stream.write(MCAP0_MAGIC)
+        stream.flush()
+        mend(stream, lambda *_: {'about': 'it'}, pytest.fail)
+        stream.seek(0)
+        assert messages(stream.read()) == []
+
+
+@pytest.mark.parametrize('number', [0, 1, 2])
+def test_messages_that_a_chunk_lacks_are_counted_by_its_indexes(number):
+    """The last message of a chunk is gone, and its lengths are what they would be without it."""
+    content = small('uncompressed')
+    kinds = records(content)
+    end_of_data = next(begin for opcode, begin, _ in kinds if opcode == Opcode.DATA_END)
+    begin, end = [(begin, end) for opcode, begin, end in kinds if opcode == Opcode.CHUNK][number]
+    last = int(walk(content[begin + 49:end])[0][-1]) + begin + 49
+    damaged = bytearray(content[:last] + content[end:end_of_data])
+    for place in (begin + 1, begin + 41):    # of the record, of its data
+        length = int.from_bytes(damaged[place:place + 8], 'little') - (end - last)
+        damaged[place:place + 8] = length.to_bytes(8, 'little')
+    found, losses = mended(damaged)
+    missing = (5, 13, 21)[number] - 1
+    truth = messages(content)
+    assert found == truth[:missing] + truth[missing + 1:]
+    assert losses.messages == 1
+
+
+@pytest.mark.parametrize('form', ['uncompressed', 'lz4', 'zstd'])
+def test_a_chunk_with_a_wrong_head_for_which_its_checksum_vouches_gets_one_again(form):
+    content = bytearray(small(form))
+    [begin, *_] = [begin for opcode, begin, _ in records(content) if opcode == Opcode.CHUNK]
+    content[begin] = Opcode.CHANNEL
+    with tempfile.TemporaryFile() as stream, tempfile.TemporaryFile() as beside:
+        stream.write(content)
+        stream.flush()
+        losses = mend(stream, lambda *_: {'about': 'it'}, lambda: beside).losses
+        beside.seek(0)
+        chunks = [record for record in StreamReader(beside, emit_chunks=True).records
+                  if isinstance(record, Chunk)]
+    assert (losses.messages, losses.doubtful) == (0, 0)
+    assert len(chunks) == 4
+    assert all(chunk.uncompressed_crc for chunk in chunks)
 
 
 @pytest.mark.parametrize('size', [0, 1, 100, 2 ** 17, 2 ** 17 + 1, 300_000])
