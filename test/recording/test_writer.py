@@ -256,6 +256,8 @@ def test_split_recordings_read_as_one(tmp_path, options, least):
             if connection.topic == '/pose'
         ]
     assert stamps == Ticks(0, 1000).stamps.tolist()
+    with Recording(path) as opened:
+        assert (opened.start_time, opened.end_time) == (stamps[0], stamps[-1])
     for name in names:
         with open(path / name, 'rb') as stream:
             topics = [

@@ -10,20 +10,27 @@ import io
 import random
 import struct
 import tempfile
+import types
 
 import pytest
 import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.records import Channel, Message
+from mcap.records import Channel, Chunk, Message
 from mcap.stream_reader import StreamReader
-from mcap.writer import CompressionType, Writer
+from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from soak import SOAK
 
+from rigid_body_sim.recording.mcap import mending
+from rigid_body_sim.recording.mcap.bytes import MemoryBytes
+from rigid_body_sim.recording.mcap.chunks import message
 from rigid_body_sim.recording.mcap.compression import compressor, zstd_length
+from rigid_body_sim.recording.mcap.forms import record_end
+from rigid_body_sim.recording.mcap.found import Damage
 from rigid_body_sim.recording.mcap.mending import Losses, mend
 from rigid_body_sim.recording.mcap.records import HEAD
+from rigid_body_sim.recording.mcap.walk import heads, walk
 
 COUNT = 24
 ERRORS = (McapError, zstandard.ZstdError, EOFError, ValueError, LookupError, RuntimeError,
@@ -32,16 +39,16 @@ FORMS = {'uncompressed': CompressionType.NONE, 'lz4': CompressionType.LZ4,
          'zstd': CompressionType.ZSTD, 'no chunks': None}
 
 
-def small(form):
+def small(form, sizes=(8, 9, 10), **options):
     """Return the bytes of a file with 24 messages on two channels, eight in a chunk."""
     stream, draw = io.BytesIO(), random.Random(1)
     writer = Writer(stream, chunk_size=300, compression=FORMS[form] or CompressionType.NONE,
-                    use_chunking=FORMS[form] is not None)
+                    use_chunking=FORMS[form] is not None, **options)
     writer.start('ros2', 'theirs')
     schema = writer.register_schema('a/B', 'ros2msg', b'float64 data')
     channels = [writer.register_channel(f'/{name}', 'cdr', schema) for name in 'xy']
     for k in range(COUNT):
-        writer.add_message(channels[k % 2], 1000 + 10 * k, draw.randbytes(8 + k % 3),
+        writer.add_message(channels[k % 2], 1000 + 10 * k, draw.randbytes(sizes[k % len(sizes)]),
                            2000 + 10 * k, k // 2)
     writer.finish()
     return stream.getvalue()
@@ -183,6 +190,17 @@ def test_a_file_cut_within_the_record_that_ends_the_data_keeps_its_last_message(
         assert mended(content[:size])[0] == messages(content), size
 
 
+@pytest.mark.parametrize('place', [0, 7, -1])
+def test_a_message_without_data_whose_opcode_is_wrong_is_kept(place):
+    """Also where the file is cut behind it: its length says that it is whole."""
+    content = small('no chunks', sizes=(0,))
+    kept = [(begin, end) for opcode, begin, end in records(content) if opcode == Opcode.MESSAGE]
+    begin, end = kept[place]
+    flipped = bytearray(content if place >= 0 else content[:end])
+    flipped[begin] = Opcode.CHANNEL
+    assert mended(flipped)[0] == messages(content)
+
+
 @pytest.mark.parametrize('form', FORMS)
 def test_a_file_cut_anywhere_keeps_what_was_there(form):
     content = small(form)
@@ -197,11 +215,123 @@ def test_a_file_cut_anywhere_keeps_what_was_there(form):
     assert kept == COUNT
 
 
-def test_a_whole_file_is_left_alone():
+def sequences(*numbers, channel=1, start=0):
+    """Return what a FoundChunk says of messages of one channel, a ns apart."""
+    records = b''.join(message(channel, number, start + k, 0, b'')
+                       for k, number in enumerate(numbers))
+    found = heads(records, walk(records)[0])
+    return types.SimpleNamespace(heads=found, counts={channel: len(numbers)},
+                                 times=found['log_time'])
+
+
+@pytest.mark.parametrize(('before', 'after', 'more', 'expected'), [
+    ((3, 4, 5), (9, 10), {}, (3, 'counted')),
+    ((2**32 - 2, 2**32 - 1), (1, 2), {}, (1, 'counted')),
+    ((3, 4, 6), (9, 10), {}, (0, 'unknown')),
+    ((3, 4, 6), (9, 10), {'lost_bytes': 0}, (0, 'counted')),
+    ((3, 4, 5), (9,), {'claimed': 100}, (4, 'estimated')),
+    ((3, 4, 5), (9, 10), {'claimed': 100, 'kept': 1}, (4, 'estimated')),
+    ((3, 4, 5), (9, 10), {'lost': 2}, (2, 'counted'))])
+def test_what_a_damage_cost_is_counted_by_sequence_or_estimated_by_size(
+        before, after, more, expected):
+    """100 bytes at 25 a message are four; sequence numbers that leave out some do not count."""
+    damage = Damage(**{'lost_bytes': 50, **more}, before=sequences(*before),
+                    after=sequences(*after))
+    assert mending._count(damage, types.SimpleNamespace(mean_message=25.0)) == expected
+
+
+def test_a_channel_that_is_not_on_both_sides_of_a_damage_does_not_keep_the_others_from_counting():
+    before, after = sequences(3, 4, 5), sequences(9, 10)
+    before.counts[2], after.counts[3] = 1, 1
+    damage, scan = Damage(50, before=before, after=after), types.SimpleNamespace(mean_message=0.0)
+    assert mending._count(damage, scan) == (3, 'counted')
+    after.counts[2] = 1    # on both sides, and too short to tell whether its numbers count
+    assert mending._count(damage, scan) == (0, 'unknown')
+
+
+@pytest.mark.parametrize(('of', 'last', 'expected'), [
+    ({'lost_bytes': 50}, 0, 98),
+    ({'lost_bytes': 0, 'claimed': 7}, 0, 98),
+    ({'lost_bytes': 0, 'lost': 7}, 0, 98),
+    ({'lost_bytes': 0}, 0, 0),
+    ({'lost_bytes': 50, 'after': None}, 170, 68),
+    ({'lost_bytes': 50, 'after': None, 'until': 160}, 0, 58),
+    ({'lost_bytes': 50, 'after': None, 'until': 10**15}, 0, 0),
+    ({'lost_bytes': 50, 'before': None}, 0, 190)])
+def test_a_hole_is_the_time_between_the_messages_around_it(of, last, expected):
+    """Those before end at 102 ns, those after begin at 200; the file begins at 10."""
+    damage = Damage(**{'before': sequences(1, 2, 3, start=100),
+                       'after': sequences(7, 8, start=200), **of})
+    scan = types.SimpleNamespace(
+        damages=[damage], contents=types.SimpleNamespace(start_time=10, end_time=400))
+    assert mending._hole(damage, scan, last) == expected
+
+
+@pytest.mark.parametrize('wrong', [0, 1, -1])
+def test_an_attachment_is_one_if_its_length_and_that_of_its_data_agree(wrong):
+    stream = io.BytesIO()
+    writer = Writer(stream, use_chunking=False)
+    writer.start('ros2', 'theirs')
+    writer.add_attachment(3, 5, 'name', 'text/plain', b'some data')
+    writer.finish()
+    content = bytearray(stream.getvalue())
+    [(begin, end)] = [(begin, end) for opcode, begin, end in records(content)
+                      if opcode == Opcode.ATTACHMENT]
+    content[end - 4 - 9 - 8] += wrong    # checksum, data, length of the data
+    assert record_end(MemoryBytes(bytes(content)), begin) == (0 if wrong else end)
+
+
+@pytest.mark.parametrize('options', [{}, {'enable_crcs': False}, {'use_statistics': False}])
+def test_a_whole_file_is_left_alone(options):
     for form in FORMS:
-        found, losses = mended(small(form))
+        found, losses = mended(small(form, **options))
         assert len(found) == COUNT
         assert losses is None
+
+
+def test_a_file_of_which_nothing_but_the_magic_is_left_is_finished_in_place():
+    with tempfile.TemporaryFile() as stream:
+        stream.write(MCAP0_MAGIC)
+        stream.flush()
+        mend(stream, lambda *_: {'about': 'it'}, pytest.fail)
+        stream.seek(0)
+        assert messages(stream.read()) == []
+
+
+@pytest.mark.parametrize('number', [0, 1, 2])
+def test_messages_that_a_chunk_lacks_are_counted_by_its_indexes(number):
+    """The last message of a chunk is gone, and its lengths are what they would be without it."""
+    content = small('uncompressed')
+    kinds = records(content)
+    end_of_data = next(begin for opcode, begin, _ in kinds if opcode == Opcode.DATA_END)
+    begin, end = [(begin, end) for opcode, begin, end in kinds if opcode == Opcode.CHUNK][number]
+    last = int(walk(content[begin + 49:end])[0][-1]) + begin + 49
+    damaged = bytearray(content[:last] + content[end:end_of_data])
+    for place in (begin + 1, begin + 41):    # of the record, of its data
+        length = int.from_bytes(damaged[place:place + 8], 'little') - (end - last)
+        damaged[place:place + 8] = length.to_bytes(8, 'little')
+    found, losses = mended(damaged)
+    missing = (5, 13, 21)[number] - 1
+    truth = messages(content)
+    assert found == truth[:missing] + truth[missing + 1:]
+    assert losses.messages == 1
+
+
+@pytest.mark.parametrize('form', ['uncompressed', 'lz4', 'zstd'])
+def test_a_chunk_with_a_wrong_head_for_which_its_checksum_vouches_gets_one_again(form):
+    content = bytearray(small(form))
+    [begin, *_] = [begin for opcode, begin, _ in records(content) if opcode == Opcode.CHUNK]
+    content[begin] = Opcode.CHANNEL
+    with tempfile.TemporaryFile() as stream, tempfile.TemporaryFile() as beside:
+        stream.write(content)
+        stream.flush()
+        losses = mend(stream, lambda *_: {'about': 'it'}, lambda: beside).losses
+        beside.seek(0)
+        chunks = [record for record in StreamReader(beside, emit_chunks=True).records
+                  if isinstance(record, Chunk)]
+    assert (losses.messages, losses.doubtful) == (0, 0)
+    assert len(chunks) == 4
+    assert all(chunk.uncompressed_crc for chunk in chunks)
 
 
 @pytest.mark.parametrize('size', [0, 1, 100, 2 ** 17, 2 ** 17 + 1, 300_000])
