@@ -90,9 +90,10 @@ def test_arguments_are_close_to_their_mean_within_a_hundredth_of_it(turn):
 
 
 def test_arguments_of_the_third_kind_of_which_one_is_off_the_others():
-    """By 5 % of them, where the series alone would err by 1e-13."""
-    assert worst((carlson_rj(*one), mp.elliprj(*one)) for one in np.ones((4, 4)) + 0.05 * np.eye(4)
-                 ) < 3.0 * EPSILON
+    """By 5 % of them, where the series alone would err by 1e-13; and some that it serves."""
+    assert worst((carlson_rj(*one), mp.elliprj(*one)) for one in (
+        *(np.ones((4, 4)) + 0.05 * np.eye(4)), (1.0, 1.002, 0.999, 1.004),
+        (1.003, 1.0, 0.998, 0.999))) < 3.0 * EPSILON    # measured 0.5
 
 
 def test_means_and_quarter_period():
