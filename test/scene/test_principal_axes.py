@@ -77,6 +77,10 @@ def test_a_sphere_has_the_axes_of_the_body():
     rows = Rotation.random(random_state=1).as_matrix().T
     moments, axes, lost = nearest((2.0, 2.0, 2.0), rows)
     assert (moments, axes, lost) == ([2.0] * 3, np.eye(3).tolist(), Lost([0.0] * 3, NOTHING))
+    # one moment is three units in the last place larger: the mean is one unit larger
+    for k in range(3):
+        moments, _, _ = nearest(np.roll((2.0 + 3.0 * 2.0 ** -51, 2.0, 2.0), k).tolist(), rows)
+        assert moments == [2.0 + 2.0 ** -51] * 3
 
 
 @pytest.mark.parametrize(('least', 'slim'), [
@@ -113,6 +117,15 @@ def test_a_moment_that_is_but_a_trace_of_the_largest_is_zero(size, share, left):
 def test_what_a_double_lost_is_nothing_where_it_overflows():
     assert _lost(Decimal('1e400')) == 0.0
     assert _lost(Decimal('0.1')) == near(-5.551115123125783e-18, rel=1e-15)
+
+
+@pytest.mark.parametrize('seed', range(8))
+def test_of_all_orders_and_signs_of_the_axes_the_turn_is_the_least(seed):
+    rows = Rotation.random(random_state=seed).as_matrix().T
+    _, axes, _ = nearest_to_the_body([1.0, 2.0, 4.0], rows.tolist(), Lost(list(LOST), NOTHING))
+    found = Rotation.from_matrix(axes).magnitude()
+    assert found == near(min((one * Rotation.from_matrix(rows)).magnitude()
+                             for one in Rotation.create_group('O')), rel=1e-14)
 
 
 @pytest.mark.parametrize('order', [(0, 1, 2), (2, 0, 1), (0, 2, 1), (2, 1, 0)])
