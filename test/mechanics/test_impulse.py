@@ -127,9 +127,9 @@ def test_any_part_of_an_impulse_that_is_not_zero_acts(k):
     scene = parse_scene(BODY.format(mass=2.0, inertia=[1, 2, 2.5], center=[0, 0, 0],
                                     constraint='free', orientation=[0, 0, 0, 1]))
     state, given = scene.initial.vector.copy(), np.eye(7)[k, :6]
-    _, work = impulse.push(
+    taken, work = impulse.push(
         parameters.parameters(scene), state, given[:3], given[3:], np.zeros(5))
-    assert work == near((0.25, 0.25, 0.25, 0.5, 0.25, 0.2, 0.0)[k], rel=1e-15)
+    assert taken and work == near((0.25, 0.25, 0.25, 0.5, 0.25, 0.2, 0.0)[k], rel=1e-15)
 
 
 @pytest.mark.parametrize('k', [0, 1, 2])
@@ -141,7 +141,7 @@ def test_about_a_rod_no_impulse_of_torque_is_taken_beyond_its_rounding(k, across
         mass=1.0, inertia=np.roll([0, 2, 2], k).tolist(), center=[0, 0, 0], constraint='free',
         orientation=[0, 0, 0, 1]))
     state, given = scene.initial.vector.copy(), np.zeros(3)
-    given[k], given[(k + across) % 3] = part, 1.0
+    given[k], given[(k + across) % 3] = 8.0 * part, 8.0
     assert impulse.apply_impulse(parameters.parameters(scene), state, np.zeros(3), given,
                                  np.empty(impulse.RESPONSE_SIZE)) == taken
     given[k] = 0.0
