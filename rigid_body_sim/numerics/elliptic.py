@@ -82,6 +82,21 @@ def carlson_rc(x, y):
     return (1.0 + series) / math.sqrt(mean)
 
 
+@compiled_inline
+def _rj_series(x, y, z, mean):
+    """Return R_J times mean^(3/2) for arguments that are close to their mean."""
+    dx, dy, dz = 1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean
+    dp = -0.5 * (dx + dy + dz)
+    e2 = dx * dy + dx * dz + dy * dz - 3.0 * dp * dp
+    e3 = dx * dy * dz + 2.0 * e2 * dp + 4.0 * dp * dp * dp
+    e4 = (2.0 * dx * dy * dz + e2 * dp + 3.0 * dp * dp * dp) * dp
+    e5 = dx * dy * dz * dp * dp
+    series = (-3 / 14 * e2 + e3 / 6 + 9 / 88 * e2 * e2 - 3 / 22 * e4 - 9 / 52 * e2 * e3
+              + 3 / 26 * e5 - e2 * e2 * e2 / 16 + 3 / 40 * e3 * e3
+              + 3 / 20 * e2 * e4 + 45 / 272 * e2 * e2 * e3 - 9 / 68 * (e3 * e4 + e2 * e5))
+    return 1.0 + series
+
+
 @compiled
 def carlson_rj(x, y, z, p):
     """Return Carlson's R_J(x, y, z, p), the integral of the third kind (DLMF 19.16.2).
@@ -101,16 +116,7 @@ def carlson_rj(x, y, z, p):
                       0.25 * (p + shift))
         mean = (x + y + z + p + p) / 5.0
         factor *= 0.25
-    dx, dy, dz = 1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean
-    dp = -0.5 * (dx + dy + dz)
-    e2 = dx * dy + dx * dz + dy * dz - 3.0 * dp * dp
-    e3 = dx * dy * dz + 2.0 * e2 * dp + 4.0 * dp * dp * dp
-    e4 = (2.0 * dx * dy * dz + e2 * dp + 3.0 * dp * dp * dp) * dp
-    e5 = dx * dy * dz * dp * dp
-    series = (-3 / 14 * e2 + e3 / 6 + 9 / 88 * e2 * e2 - 3 / 22 * e4 - 9 / 52 * e2 * e3
-              + 3 / 26 * e5 - e2 * e2 * e2 / 16 + 3 / 40 * e3 * e3
-              + 3 / 20 * e2 * e4 + 45 / 272 * e2 * e2 * e3 - 9 / 68 * (e3 * e4 + e2 * e5))
-    return factor * (1.0 + series) / (mean * math.sqrt(mean)) + 3.0 * total
+    return factor * _rj_series(x, y, z, mean) / (mean * math.sqrt(mean)) + 3.0 * total
 
 
 @compiled

@@ -72,6 +72,39 @@ def test_collocation_is_not_taken_on_roots_unless_the_scene_is_stiff(drag, collo
     assert measured.on_such(damped, 'dop8')
 
 
+@pytest.mark.parametrize(('effects', 'method', 'such', 'doubted'), [
+    ('', 'taylor', True, False), ('', 'gauss16', True, False), ('', 'rk4', False, False),
+    ("torque: {value: ['wx', 0, 0]}", 'taylor', False, False),
+    # one root among others is enough
+    ('torque: {value: [1, 0, 0]}, drag: {angular_quadratic: 1}', 'gauss16', False, True),
+    ('torque: {value: [1, 0, 0]}, drag: {angular_quadratic: 1}', 'dop8', True, False)])
+def test_what_was_measured_on_such_scenes_and_what_is_doubted(effects, method, such, doubted):
+    one = scene('free', effects)
+    assert measured.on_such(one, method) == such
+    assert measured.is_doubted(one, method) == doubted
+
+
+@pytest.mark.parametrize(('accuracy', 'taken'), [
+    (1.0, 0.1), (0.1, 0.1), (1e-5, 1e-5), (0.9e-5, 1e-6), (1e-15, 1e-15), (1e-16, 1e-15)])
+def test_on_a_plane_the_general_method_promises_what_it_is_given(accuracy, taken):
+    """From a tenth to 1e-15; power series were not measured there."""
+    disk = parse_scene('scene: s\nbody: {mass: 1, shape: {disk: {radius: 1}}}\nconstraint: '
+                       '{table: {}}\neffects: [gravity: {g: 9.8}, sliding_friction: {mu: 0.2}]\n'
+                       'initial: {}\n')
+    assert measured.pick(disk, ['dop8'], accuracy, 1e-3) == (
+        'dop8', taken, max(taken, measured.floor(disk, 1e-3)))
+    assert not measured.on_such(disk, 'taylor')
+
+
+def test_what_was_not_measured_is_not_doubted(table):
+    assert not measured.is_doubted(scene('free', 'drag: {angular_quadratic: 1}'), 'gauss16')
+
+
+def test_the_least_error_of_a_method_is_that_of_its_best_tolerance(table):
+    assert measured.least_error(scene(), 'fine') == 1e-13
+    assert measured.least_error(scene(), 'unknown') == math.inf
+
+
 def test_a_kind_that_was_not_measured_is_taken_as_if_it_made_no_heat(table):
     assert measured.rows(scene('free', 'drag: {angular: 1}')) is ROWS
 

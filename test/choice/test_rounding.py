@@ -72,6 +72,90 @@ def test_conditioning_is_what_half_an_ulp_of_the_start_does():
     assert twice == pytest.approx(np.sqrt(1.0 + again))
 
 
+NEARLY_4 = 4.0 - 2.0 ** -20    # half an ulp of it, 2^-53 times 4, is one that moves it
+
+
+def moved_runs(monkeypatch, angle):
+    """Let a run be turned about z by angle(w), w what its start was moved by in half ulps.
+
+    Returns the scene, the run that is not moved, and a list of the moves.
+    """
+    moves = []
+    one = parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 2, 3]}\nconstraint: free\neffects: '
+                      f'[]\ninitial: {{angular_velocity: [0, 0, {NEARLY_4!r}]}}\n')
+
+    def run(scene, prototype, start, times):
+        moves.append((start[7] - NEARLY_4) * 2.0 ** 51)
+        half = 0.5 * angle(moves[-1])
+        states = np.zeros((len(times), 14))
+        states[:, 3], states[:, 4] = np.sin(half), np.cos(half)
+        return states
+    monkeypatch.setattr(rounding, 'run', run)
+    states = run(one, None, one.initial.vector, TIMES)
+    moves.clear()
+    return one, states, moves
+
+
+@pytest.mark.parametrize(('angle', 'enough', 'expected', 'moves'), [
+    # |G D|^2 is a mean of four: that the first two or three make it as large is enough
+    (lambda w: 0.5e-9 * w, 1e-9, 0.5e-9, [1, 1, 1, 1]),
+    (lambda w: 1.5e-9 * w, 1e-9, 1.5e-9 * 2 ** 0.5, [1, 1, 2 ** 16]),
+    (lambda w: 1.2e-9 * w, 1e-9, 1.2e-9 * 3 ** 0.5, [1, 1, 1, 2 ** 16]),
+    (lambda w: 3e-9 * w, 1e-9, 3e-9, [1, 2 ** 16]),
+    # of other steps, whatever the move; a far one is less than 256 times as large
+    (lambda w: 3e-9 * np.sign(w), 1e-9, 0.0, [1, 2 ** 16]),
+    (lambda w: 3e-9 * np.sign(w) * (1 + 254 * (abs(w) > 2)), 1e-9, 0.0, [1, 2 ** 16]),
+    (lambda w: 3e-9 * np.sign(w) * (1 + 256 * (abs(w) > 2)), 1e-9, 3e-9, [1, 2 ** 16]),
+    # no longer in proportion: 0.03 rad are as good as 1, and as a far one
+    (lambda w: 0.07 * np.sign(w), 1.0, 1.0, [1, 2 ** 16]),
+    (lambda w: 0.04 * np.sign(w), 1.0, 1.0, [1, 1, 1, 2 ** 16]),
+    (lambda w: 2e-4 * np.sign(w) * (1 + 148 * (abs(w) > 2)), 9e-5, 0.0, [1, 2 ** 16]),
+    (lambda w: 2e-4 * np.sign(w) * (1 + 151 * (abs(w) > 2)), 9e-5, 2e-4, [1, 2 ** 16])])
+def test_whether_half_an_ulp_does_enough_is_seen_from_few_runs(angle, enough, expected, moves,
+                                                               monkeypatch):
+    shares = np.array([0.1, 0.3, 1.0, 0.2])
+    one, states, seen = moved_runs(monkeypatch, lambda w: shares * angle(w))
+    found = rounding.conditioning(one, None, TIMES, states, enough)
+    assert np.abs(seen) == near(moves, rel=1e-6)
+    assert found.max() == near(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(('slopes', 'moves'), [
+    # changes above 0.03 rad, and all after them, are found with smaller moves
+    ([1e-12, 2e-10, 3e-9, 1e-9], [23]), ([1e-12, 1e-8, 2e-5, 1e-9], [23, 10]),
+    ([1e-12, 1e-8, 2e-2, 1e-9], [23, 10, 0]),
+    # none is small enough: what half an ulp does
+    ([1e-12, 1e-8, 2e-4, 0.1], [23, 10, 0])])
+def test_a_change_is_found_by_the_largest_move_to_which_it_is_in_proportion(slopes, moves,
+                                                                            monkeypatch):
+    """A change bends at 0.03 rad, which would show in what is found with too large a move."""
+    def angle(w):
+        straight = np.array(slopes) * w
+        return np.where(np.abs(straight) > 0.0301, 0.5 * straight, straight)
+    one, states, seen = moved_runs(monkeypatch, lambda w: angle(w).clip(-1.0, 1.0))
+    found = rounding.conditioning(one, None, TIMES, states)
+    assert np.abs(seen) == near(np.exp2(np.repeat(moves, 4)), rel=1e-6)
+    assert found == near(slopes if max(slopes) < 0.03 else [*slopes[:3], 0.5 * slopes[3]],
+                         rel=1e-5)
+
+
+def test_signs_are_such_that_mixed_terms_cancel():
+    signs = np.array(rounding.SIGNS)
+    assert (np.abs(signs) == 1).all()
+    for part in rounding.OF_Q, rounding.OF_OMEGA:
+        assert (signs[:, part].T @ signs[:, part] == 4 * np.eye(part.stop - part.start)).all()
+
+
+@pytest.mark.parametrize(('share', 'asked'), [(0.9, False), (1.1, True)])
+def test_conditioning_is_not_looked_for_where_the_angle_turned_is_enough(share, asked,
+                                                                        monkeypatch):
+    one, states, seen = moved_runs(monkeypatch, lambda w: 1e-20 * w + np.zeros(4))
+    turned = rounding.of_angle_turned(one, states, TIMES)
+    found = rounding.lost(one, None, TIMES, states, share * float(turned.max()))
+    assert found == near(turned, rel=1e-15)
+    assert bool(seen) == asked
+
+
 def test_a_start_is_moved_by_half_ulps_of_its_numbers():
     one = coasting_scene()
     start = one.initial.vector

@@ -3,9 +3,10 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from rigid_body_sim.mechanics.bounds import borne, drive, swing_rate, unbounded
+from rigid_body_sim.mechanics.bounds import borne, drive, swing_momentum, swing_rate, unbounded
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -78,3 +79,20 @@ def test_dry_friction_at_a_hinge_bears_its_torque_over_the_moment():
 def test_a_spring_has_no_bound_and_a_strike_needs_none(effects, expected):
     """A spring pulls the more the longer it is; a strike does not act between two looks."""
     assert unbounded(scene('pivot', effects)) is expected
+
+
+def test_a_swing_has_the_momentum_of_its_rate_about_the_largest_moment():
+    """M g r = 10 J about the origin, where the centre of mass is 0.5 m off."""
+    tensor = np.diag([2.0, 3.0, 4.0]) + 2.0 * (0.25 * np.eye(3) - np.outer(*[[0.3, 0, 0.4]] * 2))
+    _, middle, most = np.linalg.eigvalsh(tensor)
+    assert swing_momentum(scene('pivot', 'gravity: {g: 10}')) == pytest.approx(
+        math.sqrt(4.0 * 10.0 / middle) * most)
+    assert swing_momentum(scene(HINGE, 'gravity: {g: 10}')) == pytest.approx(
+        math.sqrt(4.0 * 2.0 * 10.0 * 0.3 * 3.18))
+
+
+def test_on_a_plane_a_body_turns_with_the_momentum_of_a_fall_by_its_size():
+    egg = parse_scene('scene: s\nbody: {mass: 2, shape: {ellipsoid: {semi_axes: [0.2, 0.3, 0.1]}}}'
+                      '\nconstraint: {table: {}}\neffects: [gravity: {g: 10}, sliding_friction: '
+                      '{mu: 0.2}]\ninitial: {}\n')
+    assert swing_momentum(egg) == pytest.approx(2.0 * 0.3 * math.sqrt(10.0 * 0.3))

@@ -44,6 +44,8 @@ def test_other_operations_on_pairs():
     for a, b in zip(pairs(3, False), pairs(4, False), strict=True):
         assert abs(exact(double_double.add_alike(*a, *b)) / (exact(a) + exact(b)) - 1) <= Fraction(
             3, 2**106)
+        assert abs(exact(double_double.add_double(*a, b[0])) / (exact(a) + Fraction(b[0]))
+                   - 1) <= Fraction(2, 2**106)
         assert abs(exact(double_double.multiply_double(*a, b[0])) / (exact(a) * Fraction(b[0]))
                    - 1) <= Fraction(3, 2**106)
         assert abs(exact(double_double.root(*a)) ** 2 / exact(a) - 1) <= Fraction(8, 2**106)
@@ -52,6 +54,13 @@ def test_other_operations_on_pairs():
         assert (sum(map(Fraction, double_double.two_sum(a[0], -b[0])))
                 == Fraction(a[0]) - Fraction(b[0]))
     assert double_double.root(0.0, 0.0) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(('a', 'b'), [(1.1e305, 1.3e-20), (1.3e-20, 1.1e305), (1.1e200, 1.3e105),
+                                      (1.1e-140, 1.3e-135), (0.0, 1.1), (1.1e305, 0.0)])
+def test_a_product_is_exact_where_the_halves_of_a_factor_would_overflow(a, b):
+    found = double_double.two_product(a, b)
+    assert sum(map(Fraction, found)) == Fraction(a) * Fraction(b)
 
 
 @compiled

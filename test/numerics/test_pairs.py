@@ -3,6 +3,7 @@
 
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -39,8 +40,15 @@ def test_results_have_32_digits(of, expected):
 def test_a_root_has_32_digits_and_what_is_negative_or_divided_by_zero_is_zero():
     assert abs(exact(pairs.root_of(A)) ** 2 / exact(A) - 1) <= 8 * U2
     assert pairs.over(A, (0.0, 0.0)) == (0.0, 0.0)
-    assert pairs.not_negative(A) == A
+    assert pairs.not_negative(A) == A and pairs.not_negative(B) == B
     assert pairs.not_negative(MINUS) == pairs.not_negative((0.0, -1e-300)) == (0.0, 0.0)
+
+
+def test_a_radian_is_a_share_of_a_turn():
+    with mpmath.workdps(40):
+        high, low = map(mpmath.mpf, pairs.TURN)
+        assert abs(2 * mpmath.pi * (high + low) - 1) <= 2.0 ** -106
+    assert abs(low) <= 2.0 ** -53 * high
 
 
 def test_a_pair_is_stored_and_read_high_part_first():

@@ -86,6 +86,7 @@ def test_no_ramp_is_a_plain_rotation():
 def test_extremes_stay_unit():
     for case in [(1e300, 1e299, 1e3, 1.0), (1e-300, 1e-200, 1e-3, 1.0), (1.0, 1.0, 1e-320, 1.0),
                  (1e160, 1e150, 1e-300, 1.0), (5.0, 1e-320, 1.0, 3.0), (0.0, 1e8, 1.0, 1e-9),
-                 (-1e8, 1.0, 1.0, 2e8)]:
+                 (-1e8, 1.0, 1.0, 2e8),
+                 (1e300, 1e299, 1e3, 1e9)]:
         assert math.sqrt(sum(part * part for part in ramped_rotation(*case))) == pytest.approx(
             1.0, abs=2e-15)

@@ -30,7 +30,7 @@ def exact(x):
 @pytest.mark.parametrize('x', PLACES)
 def test_doubles_are_good_to_a_few_ulp(x):
     for found, expected in zip(relaxation(x), exact(x), strict=True):
-        assert abs(found / expected - 1) < 8 * ULP
+        assert abs(found / expected - 1) < 4 * ULP    # measured 2
 
 
 @pytest.mark.parametrize('x', PLACES)
@@ -42,7 +42,7 @@ def test_pairs_are_good_to_29_digits(x):
         expected = exact(whole)[1 + (expected == 0.5)] if x else expected
         with mpmath.workdps(60):
             found = mpmath.mpf(high) + mpmath.mpf(low)
-            assert abs(found / expected - 1) < 1e-27 * (1 + abs(x))
+            assert abs(found / expected - 1) < 6e-32 * (1 + abs(x))    # measured 1.8e-32
         assert abs(low) <= ULP * abs(high)
 
 

@@ -42,5 +42,14 @@ def test_it_is_the_method_of_scipy():
             y = x - shift
             return a * y * abs(y) + b * y * y * y + c * math.copysign(math.sqrt(abs(y)), y) + d * y
 
-        assert root(function, begin, end, 1e-15, 8.9e-16) == brentq(
-            function, begin, end, xtol=1e-15, rtol=8.9e-16)
+        def wavy(x, function=function, a=a, begin=begin, end=end):
+            return function(x) + 9.0 * a * math.sin(8.0 * x) * (x - begin) * (end - x)
+
+        def stepped(x, function=function):
+            y = function(x)
+            return math.copysign(0.25 + round(abs(y)), y)
+
+        # one that rises, one that comes back on its way, and one that has equal values
+        for one in function, wavy, stepped:
+            assert root(one, begin, end, 1e-15, 8.9e-16) == brentq(
+                one, begin, end, xtol=1e-15, rtol=8.9e-16)

@@ -72,6 +72,11 @@ def test_differences_of_moments_that_were_moved_are_those_before_rounding(about)
         assert abs(inertia.differences[2] - (I1 - I2)) > 1e-8 * abs(I1 - I2)    # doubles lose that
 
 
+def test_differences_of_moments_have_what_rounding_took_from_each_of_them():
+    inertia = bodies.Inertia((5.0, 3.0, 2.0), lost=(0.5, 0.125, 0.0625))
+    assert inertia.differences == (1.0625, -3.4375, 2.375)
+
+
 def test_flat_shapes_have_perpendicular_axes():
     for name, dimensions in (('lamina', {'width': 0.3, 'height': 0.7}), ('hoop', {'radius': 0.3}),
                              ('disk', {'radius': 0.7})):
@@ -112,6 +117,7 @@ def test_a_ball_whose_tensor_was_rounded_is_a_ball():
     assert inertia.moments == near([0.4] * 3, 4 * EPS)
     assert len(set(inertia.moments)) == 1
     assert inertia.axes == (0.0, 0.0, 0.0, 1.0)
+    assert inertia.rows == inertia.entries == ()    # its axes are those of the body
 
 
 def test_equal_moments_keep_the_input_axes():

@@ -212,3 +212,27 @@ def test_a_slim_composite_along_its_axes_knows_the_difference_of_its_large_momen
     exact_difference = sum(Fraction(I1) - Fraction(I2) for I1, I2, _ in made)
     # measured: 0; 1e-11 of I3 with moments in doubles
     assert abs(about.differences[2] - exact_difference) <= 1e-20 * about.moments[2]
+
+
+def test_a_hole_is_what_the_part_adds_with_the_other_sign():
+    """Also what rounding took, and the entries of a tensor that was turned."""
+    parts = [make_body(2.0, (1.0, 2.0, 2.5), exact=[
+        [1 + Fraction(1, 10 ** 17), 0, 0], [0, 2 + Fraction(1, 10 ** 17), 0],
+        [0, 0, Fraction(5, 2) - Fraction(1, 10 ** 17)]]),
+        make_body(2.0, [[1.0, 0.1, 0.2], [0.1, 2.0, -0.3], [0.2, -0.3, 2.5]], (0.1, 0.2, 0.3))]
+    for part in parts:
+        hole = composites.hole(part)
+        assert hole.mass == -2.0 and hole.center_of_mass == part.center_of_mass
+        for found, of in ((hole.about_center, part.about_center),
+                          (hole.about_origin, part.about_origin)):
+            assert np.array_equal(found.exact, -np.array(of.exact))
+
+
+def test_a_centre_of_mass_that_is_zero_but_for_the_sixty_digits_is_zero():
+    """A half turn about (1, 2, 2) makes (9, 0, 0) to (-7, 4, 4), with ninths on the way."""
+    ball, off = (make_body(1.0, (1.0, 1.0, 1.0), center)
+                 for center in ((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)))
+    found = composites.composite([(off, (0.0, 0.0, 0.0), (1.0, 2.0, 2.0, 0.0)),
+                                  (ball, (7.0, -4.0, -4.0), IDENTITY),
+                                  (ball, (0.0, 0.0, 0.0), IDENTITY)])
+    assert found.exact_center == (0, 0, 0)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.surfaces import (
     ELLIPSOID,
     SPHERE,
@@ -51,7 +52,8 @@ def test_a_point_of_a_surface_is_told_from_the_origin_of_the_body():
     ([1e6, 1.0, 1.0], [0, 0, 0], True), ([1.1e6, 1.2, 1.2], [0, 0, 0], False),
     ([1.0, 1.0, 1.0], [0, -1e6, 0], True), ([1.0, 1.0, 1.0], [0, -1.1e6, 0], False),
     ([1.0, 1e-6, 1.0], [0, 0, 0], True), ([1.0, 0.9e-6, 1.0], [0, 0, 0], False),
-    ([1e-9, 1e-9, 1e-9], [0, 0, 0], True), ([0.9e-9, 0.9e-9, 0.9e-9], [0, 0, 0], False)])
+    ([1e-9, 1e-9, 1e-9], [0, 0, 0], True), ([0.9e-9, 0.9e-9, 0.9e-9], [0, 0, 0], False),
+    ([1.0e-8, 0.9e-9, 1.0e-8], [0, 0, 0], False)])
 def test_dimensions_are_taken_up_to_their_bounds(sizes, center, taken):
     mapping = {'ellipsoid': {'semi_axes': sizes, 'center': center}}
     if taken:
@@ -59,3 +61,14 @@ def test_dimensions_are_taken_up_to_their_bounds(sizes, center, taken):
     else:
         with pytest.raises(BadInput, match=r'here\.ellipsoid: got lengths'):
             surface_of(mapping, 'here')
+
+
+def test_a_surface_has_its_middle_in_the_origin_of_the_body_unless_it_is_given():
+    assert surface_of({'sphere': {'radius': 2}}, 'here').center == (0.0, 0.0, 0.0)
+
+
+def test_a_body_has_one_surface():
+    for surface in '{}', '{sphere: {radius: 1}, disk: {radius: 1}}':
+        with pytest.raises(BadInput, match=r'body\.surface'):
+            parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 1, 1], '
+                        f'surface: {surface}}}\nconstraint: free\neffects: []\ninitial: {{}}\n')

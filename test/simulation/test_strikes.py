@@ -22,7 +22,10 @@ ROD = ('scene: rod\nbody: {{mass: 1, inertia: [1, 1, 0]}}\nconstraint: free\n'
 
 
 def spans_until(scene, time, begun=0.0, wrench=None):
-    """Return the spans of a body that coasts, from a first one that begins at a time (s)."""
+    """Return the spans of a body that coasts, from a first one that begins at a time (s).
+
+    They are followed up to a time, or to one after another.
+    """
     def solver(start, wrench):
         found = Coasting().start(start)
         found.name, found.entries = 'coasting', lambda at: np.full(entries_size(scene), at)
@@ -31,13 +34,15 @@ def spans_until(scene, time, begun=0.0, wrench=None):
     start[0] = begun
     wrench = wrench or Wrench()
     first = Span(begun, solver(start, wrench), wrench, 0, np.zeros(entries_size(scene)), start)
-    return Strikes(scene, parameters(scene)).follow(
-        [first], time, types.SimpleNamespace(solver=solver))
+    spans, follow = [first], Strikes(scene, parameters(scene)).follow
+    for until in np.atleast_1d(time).tolist():
+        spans = follow(spans, until, types.SimpleNamespace(solver=solver))
+    return spans
 
 
 @pytest.mark.parametrize(('until', 'times', 'rates'), [
     (0.9, [0.0], [3.0]), (1.0, [0.0, 1.0], [3.0, 1.0]), (2.4, [0.0, 1.0], [3.0, 1.0]),
-    (5.0, [0.0, 1.0, 2.5], [3.0, 1.0, 2.0])])
+    (5.0, [0.0, 1.0, 2.5], [3.0, 1.0, 2.0]), ((2.4, 5.0), [0.0, 1.0, 2.5], [3.0, 1.0, 2.0])])
 def test_a_strike_begins_a_span_at_its_very_time(until, times, rates):
     """J at y = 1 along x takes J/4 from the rate about z."""
     scene, held = coasting_scene((2.5, -4.0), (1.0, 8.0), (9.0, 1.0)), Wrench((1.0, 0.0, 0.0))

@@ -186,6 +186,17 @@ def gradient(now, kind):
     return np.zeros(3), now.turn.apply(np.cross(n, np.array(TENSOR) @ n) * 3.0 * 5.0 / 27.0)
 
 
+ORBIT = 'gravity_gradient: {orbit: {rate: 1.3, normal: [1, 2, -2], toward: [4, -4, -2]}}'
+
+
+def gradient_on_orbit(now, kind):
+    """Return that with mu/r^3 = rate^2, by the directions toward and normal x toward."""
+    turned = 1.3 * now.t
+    world = np.cos(turned) * np.array([2.0, -2.0, -1.0]) - np.sin(turned) * np.array([2, 1, 2])
+    n = now.turn.inv().apply(world) / 3.0
+    return np.zeros(3), now.turn.apply(np.cross(n, np.array(TENSOR) @ n) * 3.0 * 1.3 ** 2)
+
+
 def magnet(now, kind):
     m = now.turn.apply([0.2, -0.5, 1.1])
     return np.zeros(3), np.cross(m, [0.3, 0.1, -0.7])
@@ -243,6 +254,7 @@ CASES = {
     f'{SPRING}, length: 0.8, damping: 0.6}}': (
         lambda now, kind: spring(now, kind, 0.8, 0.6), NO_AXIS),
     'gravity_gradient: {mu: 5, position: [2, -1, 2]}': (gradient, FREE),
+    ORBIT: (gradient_on_orbit, FREE),
     'magnetic: {moment: [0.2, -0.5, 1.1], field: [0.3, 0.1, -0.7]}': (magnet, EVERYWHERE),
     'magnetic: {moment: [0.2, -0.5, 1.1], field: ["x*y", "z^2", "k*x"]}': (
         magnet_in_field, NO_AXIS),
@@ -259,6 +271,19 @@ def test_what_acts_is_what_the_formula_says(effects, kind):
         for found, expected in zip(pushed(effect, frame, now), CASES[effects][0](now, kind),
                                    strict=True):
             assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize('effects', ['gravity_gradient: {mu: 5, position: [2, -1, 2]}', ORBIT])
+def test_a_gradient_turns_a_body_on_a_plane_as_a_free_one(effects):
+    """Its frame there has not the principal axes."""
+    scene = parse_scene(
+        f'scene: s\nbody: {{mass: {MASS}, inertia: {TENSOR}, surface: {{sphere: {{radius: 1}}}}'
+        '}\nconstraint: {table: {}}\neffects: [gravity: {g: 9.8}, sliding_friction: {mu: 0.2}, '
+        f'{effects}]\ninitial: {{}}\n')
+    for seed in range(3):
+        now = drawn('free', seed)
+        _, found = pushed(scene.effect('gravity_gradient'), scene.frame, now)
+        assert found == pytest.approx(CASES[effects][0](now, 'free')[1], rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize(('effects', 'kind'), [*PLACES, ('wrench', 'free'), ('wrench', 'pivot')])
