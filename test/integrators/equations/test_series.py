@@ -7,7 +7,12 @@ from mechanics.contact.test_touch import scene_of
 from near import near
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.integrators.equations.series import SERIES, Series, has_phases
+from rigid_body_sim.integrators.equations.series import (
+    SERIES,
+    Series,
+    has_formulas,
+    has_phases,
+)
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -27,7 +32,8 @@ def scene(effects, constraint='free'):
 
 @pytest.mark.parametrize(('effects', 'constraint', 'falls', 'pushed'), [
     ([GRAVITY], 'free', True, False), ([DRAG], 'free', True, False),
-    ([TORQUE], 'free', False, False), ([GRAVITY], 'pivot', False, True),
+    ([DRAG, TORQUE], 'free', True, False), ([TORQUE], 'free', False, False),
+    ([GRAVITY], 'pivot', False, True),
     ([GRAVITY, TORQUE], 'pivot', False, True), ([GRAVITY, TORQUE], 'free', True, False),
     ([TORQUE], 'pivot', False, False)])
 def test_a_free_body_falls_under_forces_and_one_that_is_held_is_turned_by_them(
@@ -59,6 +65,20 @@ def test_a_force_turns_a_held_body_by_its_arm_over_the_moments(q):
     turned = np.cross(rotate_back(*axes, *arm), (fx, fy, fz)) / moments
     assert found == pytest.approx(turned, abs=1e-14)
     assert held.constant == pytest.approx(rotate_back(*axes, 0.1, 0.2, -0.4) / moments, abs=1e-15)
+
+
+def test_a_couple_of_the_world_and_a_hinge_are_told():
+    couple = Series(scene([GRAVITY, 'torque: {frame: world, value: [0.1, 0.2, -0.4]}']))
+    hinged = Series(scene([GRAVITY], '{hinge: {axis: [0, 0, 1]}}'))
+    assert (couple.coupled, couple.hinged) == (True, False)
+    assert (hinged.coupled, hinged.hinged) == (False, True)
+
+
+@pytest.mark.parametrize(('effects', 'have'), [
+    ([GRAVITY], False), ([GRAVITY, "torque: {value: ['wx', 0, 0]}"], True),
+    ([GRAVITY, 'internal_dissipation: {coefficient: 0.02}'], False)])
+def test_one_formula_is_enough_to_have_some(effects, have):
+    assert has_formulas(scene(effects)) is have
 
 
 def test_one_effect_without_series_is_enough_to_refuse():

@@ -19,6 +19,7 @@ from rigid_body_sim.motions.lagrange_top.anchor import (
     _rf_or_never,
     _starting_phases,
     _stays,
+    quotient,
 )
 from rigid_body_sim.motions.lagrange_top.theta import Klein
 
@@ -83,7 +84,8 @@ def test_the_phases_at_the_start_come_from_the_two_functions_that_are_not_near_z
         periodic.items(), (a, b, b - a), strict=True)}
     start[hidden] *= 1j    # by rounding
     roots = types.SimpleNamespace(
-        x=(2.0 * shares['a'],), x2=(2.0,), y=(3.0 * shares['b'],), y1=(3.0,),
+        x=(2.0 * shares['a'], 1e-17), x2=(2.0, 3e-16), y=(3.0 * shares['b'], 1e-17),
+        y1=(3.0, 3e-16),
         w=5.0 * shares['omega'], w1=5.0)
     found = _starting_phases(*(Klein(*((z.real, z.imag) for z in of.values()))
                                for of in (start, periodic)), roots)
@@ -111,3 +113,9 @@ def test_no_turning_point_is_left_out_or_told_twice(body, orientation, omega):
         assert [motion.next_event(anchor, after) for after in (
             before, math.nextafter(before, math.inf), 0.5 * (before + time),
             math.nextafter(time, 0.0))] == 4 * [(time, 0)]
+
+
+@pytest.mark.parametrize(('a', 'b', 'found'), [
+    (3.0, 1.0, 3.0), (3.0, -2.0, -1.5), (3.0, 0.0, 0.0)])
+def test_a_share_of_nothing_is_none(a, b, found):
+    assert quotient(a, b) == found
