@@ -86,3 +86,46 @@ def test_a_time_before_the_start_at_which_drag_makes_it_infinite_is_refused():
     assert np.isfinite(out).all()
     with pytest.raises(BadInput, match='before the start'):
         one.states(np.array([0.0, -1e6]), out)
+
+
+def test_entries_are_those_of_the_motion_or_else_integrated_where_anything_acts(monkeypatch):
+    """The integral is begun once, and goes on."""
+    made = []
+
+    def quadrature(actors, states, start, error):
+        made.append((actors, start, error))
+        return types.SimpleNamespace(until=lambda time: [time, 2.0, 3.0, 4.0, 5.0])
+
+    def entries(anchor, time, out):
+        out[:2] = anchor, time
+    monkeypatch.setattr(solver, 'Quadrature', quadrature)
+    one = object.__new__(Exact)
+    one.motion, one.anchor = types.SimpleNamespace(entries=entries), 7.0
+    assert one.entries(1.5).tolist() == [7.0, 1.5, 0.0, 0.0, 0.0]
+    one.motion, one._quadrature, one._start = types.SimpleNamespace(entries=None), None, 'start'
+    actors = types.SimpleNamespace(acts=False)
+    one._asked = types.SimpleNamespace(actors=actors)
+    assert one.entries(1.5).tolist() == [0.0] * 5
+    actors.acts = True
+    assert one.entries(1.5).tolist() == [1.5, 2.0, 3.0, 4.0, 5.0]
+    assert one.entries(2.5).tolist() == [2.5, 2.0, 3.0, 4.0, 5.0]
+    assert made == [(actors, 'start', 0.0)]
+
+
+def test_an_event_found_on_the_states_is_told_once():
+    """The one at the end of a tick belongs to that tick."""
+    one, _ = counting([])
+    one._asked.tells, found = False, [(1.0, 'a', {}), (1.5, 'b', {}), (2.0, 'c', {})]
+    one._watcher = types.SimpleNamespace(events=lambda until, tick: found)
+    assert one.events(1.0, 2.0) == found[1:]
+    assert one.events(0.5, 2.0) == found
+
+
+@pytest.mark.parametrize('times', [(), (1.0,)])
+def test_no_bodies_and_no_times_have_no_states(times):
+    scene = load_scene('tennis_racket')
+    one = choose(scene, 'exact').solver(scene.initial.vector, None)
+    one.states(np.array(times), np.empty((len(times), 14)))
+    for bodies in (0, 2):
+        one.many(np.array([scene.initial.vector] * bodies).reshape(-1, 14), np.array(times),
+                 np.empty((bodies, len(times), 14)))

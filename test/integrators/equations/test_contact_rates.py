@@ -315,13 +315,19 @@ def dry(surface, **changes):
     ('disk', {'way': (1.0, 0.0)}, lambda flat, s_b: flat),
     ('torus', {'way': (0.6, 0.8)}, lambda flat, s_b: 0.7 - 0.2),
     ('torus', {'way': (1.0, 0.0), 'rim': 1.0}, lambda flat, s_b: min(flat, s_b + 0.2)),
-    ('torus', {'way': (-1.0, 0.0), 'rim': 1.0}, lambda flat, s_b: 0.2 - s_b)])
+    ('torus', {'way': (-1.0, 0.0), 'rim': 1.0}, lambda flat, s_b: 0.2 - s_b),
+    # so fast that the speeds that count as none are more than what it is off lying flat
+    ('torus', {'way': (1.0, 0.0), 'rim': 1.0, 'swift': 1e14}, lambda flat, s_b: flat),
+    ('torus', {'way': (-1.0, 0.0), 'rim': 1.0, 'swift': 1e14}, lambda flat, s_b: 10.0 - s_b)])
 def test_a_rolling_ends_where_it_stands_still_or_goes_back(surface, changes, motion):
     """By a speed that counts as none, 1e-13 of the speeds; a torus that tips may come down."""
-    kernels, c, at = dry(surface, swift=2e12, **changes)
-    flat, s_b = above_flat(c, at.axes[2]), tips(c, at)
-    assert at.axes[2][2] > 0.0
-    assert kernels._motion(c, at, 0.7, 0.3) == near(motion(flat, s_b), rel=1e-12)
+    kernels, c, at = dry(surface, **{'swift': 2e12, **changes})
+    x, *rest = at.q
+    for q in at.q, (-x, *rest):    # to either side of the first axis
+        at = posture(c, q, at.omega)
+        flat, s_b = above_flat(c, at.axes[2]), tips(c, at)
+        assert at.axes[2][2] > 0.0
+        assert kernels._motion(c, at, 0.7, 0.3) == near(motion(flat, s_b), rel=1e-12)
 
 
 @pytest.mark.parametrize(('surface', 'changes', 'left'), [

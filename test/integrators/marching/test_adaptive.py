@@ -27,7 +27,7 @@ pytestmark = pytest.mark.without_numba
 TRIAL = """
 def trial(p, w, y, c, k0, h, scales):
     tried.append(h)
-    error = p[0] * h ** 8 + p[1] if h <= p[2] else math.nan if p[2] > 0.0 else math.inf
+    error = w[0] * (p[0] * h ** 8 + p[1]) if h <= p[2] else math.nan if p[2] > 0.0 else math.inf
     return (y[0] + k0[0] * h,), c, (p[3], 1.0), error
 tried = []
 """
@@ -44,6 +44,7 @@ def start(planned, tolerance=1e-7, C=1.0, error=0.0, most=math.inf, square=0.0, 
     """Return (p, control, point, following) of a march at its start."""
     control, point = np.zeros(MARCH.WEIGHTS + 1), np.zeros(VALUES + 2)
     control[TOLERANCE], control[MARCH.ROUNDING], point[STEP] = tolerance, rounding, planned
+    control[MARCH.WEIGHTS] = 1.0
     MARCH.tried.clear()
     return np.array([C, error, most, square]), control, point, point.copy()
 
@@ -106,6 +107,13 @@ def test_a_step_that_is_refused_again_and_again_is_given_up(most):
     assert MARCH.march(*of, target=1.0, end=math.inf, limit=9) == (0, False)
     assert len(MARCH.tried) == MARCH.TRIALS
     assert of[2][TIME] == of[3][TIME] == 0.0
+
+
+def test_a_step_that_does_not_move_the_time_is_none():
+    """Its error is none, but nothing would ever come after it."""
+    of = start(1e-30)
+    of[2][TIME] = of[3][TIME] = 1.0
+    assert MARCH.march(*of, target=2.0, end=math.inf, limit=9) == (0, False)
 
 
 @pytest.mark.parametrize(('end', 'times'), [
