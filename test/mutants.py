@@ -217,10 +217,11 @@ def sites(tree):
         if found:
             yield Site(found[0], node, tuple(found[1]), statement, function)
         for field, value in ast.iter_fields(node):
-            # types say nothing to the machine, and places inside of a text are wrong before
-            # Python 3.12
-            if field in ('annotation', 'returns', 'decorator_list') or isinstance(
-                    node, ast.JoinedStr):
+            # types say nothing to the machine, places inside of a text are wrong before
+            # Python 3.12, and zip's strict=True acts where lengths differ, which they never do
+            if (field in ('annotation', 'returns', 'decorator_list')
+                    or isinstance(node, ast.JoinedStr)
+                    or (isinstance(node, ast.keyword) and node.arg == 'strict')):
                 continue
             for part in value if isinstance(value, list) else [value]:
                 if isinstance(part, ast.AST):

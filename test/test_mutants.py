@@ -22,7 +22,7 @@ def f(x1, x2, limit: int = -1):
     """Return 1 + 1."""
     if x1 < limit and not x2:
         return f'{x1 + 1}'
-    for k in range(2):
+    for k, _ in zip(range(2), 'ab', strict=True):
         x1 += min(x1, x2) * k
     return x1 - x2
 '''
@@ -50,9 +50,11 @@ def test_each_kind_of_change_is_made_once_at_its_place(tmp_path):
         (6, 'f', 'def f(x1, x2, limit: int=1):'), (8, 'f', 'if x1 < limit and (not x1):'),
         (8, 'f', 'if x1 < limit and x2:'), (8, 'f', 'if x1 < limit or not x2:'),
         (8, 'f', 'if x1 <= limit and (not x2):'), (8, 'f', 'if x1 > limit and (not x2):'),
-        (8, 'f', 'if x2 < limit and (not x2):'), (10, 'f', 'for k in range(1):'),
-        (10, 'f', 'for k in range(3):'), (11, 'f', 'x1 += max(x1, x2) * k'),
-        (11, 'f', 'x1 += min(x1, x1) * k'), (11, 'f', 'x1 += min(x1, x2) / k'),
+        (8, 'f', 'if x2 < limit and (not x2):'),
+        (10, 'f', "for k, _ in zip(range(1), 'ab', strict=True):"),
+        (10, 'f', "for k, _ in zip(range(3), 'ab', strict=True):"),
+        (11, 'f', 'x1 += max(x1, x2) * k'), (11, 'f', 'x1 += min(x1, x1) * k'),
+        (11, 'f', 'x1 += min(x1, x2) / k'),
         (11, 'f', 'x1 += min(x2, x2) * k'), (11, 'f', 'x1 -= min(x1, x2) * k'),
         (12, 'f', 'return x1 + x2'), (12, 'f', 'return x1 - x1'), (12, 'f', 'return x2 - x2')]
     for one in found:
