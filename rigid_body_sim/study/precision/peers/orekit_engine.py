@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Orekit (Java): TorqueFree, its closed form of a body that turns freely, called through JPype.
 
-It has Jacobi's functions for omega, and an integral that it samples over one period when it is
-made. Other motions need its numerical propagators of satellites.
+It has Jacobi's functions for omega; the angle that is left it integrates by steps over one
+period, when a motion is made. Other motions need its numerical propagators of satellites.
 """
 
 import importlib.metadata
