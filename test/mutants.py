@@ -362,6 +362,8 @@ def stages(file, root=ROOT, near=False):
     lists = [[str(path.relative_to(root)) for path in paths] for paths in lists]
     quick = [[path for path in paths if path not in SLOW] for paths in lists]
     digests = [test for test in wider if test == DIGESTS]
+    if near and file.startswith(f'{PACKAGE}/study/machines/'):
+        digests = [DIGESTS]    # what makes them
     if near:
         folder = tests.joinpath(*parts[:-1])
         beside = sorted(quick[2], key=lambda path: root.joinpath(path).parent != folder)
