@@ -90,6 +90,15 @@ def test_nothing_is_predicted_where_there_is_no_such_line(name):
                                              else set())
 
 
+@pytest.mark.parametrize('override', [
+    'body.inertia=[0.03, 0.029, 0.01]', 'body.inertia=[0.029, 0.03, 0.01]',
+    'body.center_of_mass=[0.001, 0, 0.1]', 'body.center_of_mass=[0, 0.001, 0.1]'])
+def test_nutation_is_predicted_for_a_top_with_equal_moments_and_its_weight_on_the_axis(override):
+    assert {line.name for line in predicted_lines(load_scene('heavy_top'))} == {
+        'nutation', 'precession'}
+    assert predicted_lines(load_scene('heavy_top', [override])) == ()
+
+
 def test_steady_rotation_and_rest_have_no_period():
     for omega in ([0, 0, 5.0], [0, 5.0, 0], [0, 0, 0]):
         assert predicted_lines(load_scene(

@@ -2,12 +2,14 @@
 """taylor on effects whose laws are formulas, and where what a root is taken of passes zero."""
 
 import math
+import types
 
 import numpy as np
 import pytest
 from soak import IN_SOAK
 
 from rigid_body_sim.choice import measured
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import runnable
 from rigid_body_sim.integrators.equations.expanded import Expanded
 from rigid_body_sim.integrators.equations.plan import Plan
@@ -81,6 +83,15 @@ def test_taylor_and_dop8_agree(name):
     # at 1e-13 the two may differ by 2e-13; at 3e-14 what is left is mostly rounding
     found, other = (state(scene, 1.0, method, accuracy=3e-14) for method in ('taylor', 'dop8'))
     assert np.abs(found - other).max() < 2e-14    # measured: 7e-15
+
+
+def test_one_effect_without_a_series_is_enough_to_be_refused():
+    """Also where the others have one; an effect that does not act needs none."""
+    with_one, without, idle = (types.SimpleNamespace(acting=acting, series=series)
+                               for acting, series in ((1, 1), (1, None), (None, None)))
+    for effects in [without], [with_one, without], [without, with_one, idle]:
+        with pytest.raises(BadInput, match='taylor cannot run the scene made up'):
+            Expanded(types.SimpleNamespace(name='made up', effects=effects))
 
 
 def test_weight_on_a_hinge_takes_no_product_of_series():

@@ -183,6 +183,18 @@ def test_a_message_index_with_a_wrong_length_does_not_swallow_a_chunk(form, into
         assert mended(flipped)[0] == messages(content), begin
 
 
+@pytest.mark.parametrize('opcode', [0x7F, Opcode.CHANNEL, Opcode.ATTACHMENT])
+def test_a_message_index_with_a_wrong_opcode_is_one_by_its_lengths_and_costs_nothing(opcode):
+    content = small('zstd')
+    for begin in [begin for kind, begin, _ in records(content) if kind == Opcode.MESSAGE_INDEX]:
+        flipped = bytearray(content)
+        flipped[begin] = opcode
+        found, losses = mended(flipped)
+        assert found == messages(content), begin
+        told = losses or Losses()
+        assert (told.messages, told.bytes) == (0, 0), begin
+
+
 def test_a_file_cut_within_the_record_that_ends_the_data_keeps_its_last_message():
     content = small('no chunks')
     [begin] = [begin for opcode, begin, _ in records(content) if opcode == Opcode.DATA_END]
