@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import parse_scene
@@ -49,3 +50,14 @@ def test_a_late_body_is_not_moved_by_the_stretches_before_it():
     for start, states in zip(starts, alone, strict=True):
         one.start(start).states(times, states)
     assert together == pytest.approx(alone, abs=1e-7)
+
+
+@pytest.mark.without_numba
+def test_a_body_whose_clock_is_too_coarse_for_a_step_is_named_and_ends_the_run():
+    """A double does not tell 2^53 s from half a second later, when a torque acts."""
+    one = Stepped(SCENE, 'taylor', accuracy=1e-9, horizon=2.0)
+    starts = np.tile(SCENE.initial.vector, (3, 1))
+    starts[:, 5:8] = 0.0
+    starts[:, 0] = 2.0 ** 53
+    with pytest.raises(NotConverged, match=r'body 0: .* at t = 9007199254740992\.0 s'):
+        one.many(starts, np.array([2.0 ** 53 + 1000.0]), np.empty((3, 1, 14)))
