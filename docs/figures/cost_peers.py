@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Our time over that of the best peer, for each problem of the suite and each accuracy."""
 
-from figures.marks import MARKS, name
+from figures.marks import dots, key
 from figures.page_tables import numbers, table
-from figures.style import BLACK, label, panels, plain_ticks
+from figures.style import label, panels, plain_ticks
 
 
 def draw(page='accuracy/problems'):
@@ -17,15 +17,9 @@ def draw(page='accuracy/problems'):
                 numbers(our)[0] / numbers(their)[0] if numbers(their) else None
                 for our, their in zip(ours, cells, strict=True)]
     figure, [axes] = panels(height=4.2)
-    for row, of in enumerate(reversed(ratios.values())):
-        for ratio, mark in zip(of, MARKS.values(), strict=True):
-            if ratio is not None:
-                axes.plot(ratio, row, **mark)
-    axes.axvline(1.0, color=BLACK, linewidth=0.8)
+    dots(axes, ratios)
     axes.set_xscale('log')
     plain_ticks(axes.xaxis, (0.0001, 0.001, 0.01, 0.1, 1))
-    axes.set_yticks(range(len(ratios)), list(reversed(ratios)))
-    for accuracy, mark in MARKS.items():
-        axes.plot([], [], label=name(accuracy), **mark)
-    label(axes, 'time over that of the best peer', '', loc='lower left')
+    label(axes, 'time over that of the best peer', '', legend=False)
+    key(figure)
     return figure

@@ -195,9 +195,9 @@ def test_runge_and_kutta_miss_the_onset_of_rolling_by_a_step(name):
 
 def test_peers_that_are_installed_are_told_from_the_others():
     pytest.importorskip('numba')
+    from rigid_body_sim.study.precision import peers
     found, missing = beside.modules()
     assert {'numba RK4', 'SciPy DOP853'} <= set(found)
     assert all(name == module.NAME for name, module in found.items())
     assert not set(found) & set(missing)
-    # with Orekit; each is a module of peers/ that has `runners`
-    assert len(found) + len(missing) == 10
+    assert len(found) + len(missing) == len(peers.MODULES)
