@@ -45,6 +45,16 @@ def test_times_are_asked_for_from_the_start_to_where_turns_count(first, last, er
         assert 'turns with 13.0 rad/s; until 6.5 s' in str(found.value)
 
 
+def test_of_many_times_the_earliest_and_the_latest_are_looked_at():
+    seen = []
+    of = types.SimpleNamespace(
+        _within=lambda *ends: seen.append(ends), _check=lambda rows: None,
+        _course=types.SimpleNamespace(states=lambda times, out: seen.append(times.tolist())))
+    for times in ([3.0, 1.0, 2.0], []):
+        Stepped.states(of, times, np.empty((len(times), 14)))
+    assert seen == [(1.0, 3.0), [3.0, 1.0, 2.0]]
+
+
 @pytest.mark.parametrize(('status', 'step', 'value', 'again'), [
     (REACHED, None, 1.0, False), (REACHED, None, 1e60, False), (REACHED, 0.1, 1e49, False),
     (REACHED, 0.1, 1e51, True), (REACHED, 0.1, -1e51, True), (REACHED, 0.1, math.nan, True),

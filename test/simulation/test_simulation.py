@@ -181,6 +181,8 @@ def test_past_is_kept_until_it_is_forgotten():
     (lambda s: s.hold(torque=(1, 2, 3), frame='moon'), "'world' or 'body'"),
     (lambda s: s.hold(torque={1, 2, 3}), 'three finite numbers'),
     (lambda s: s.states([np.nan]), 'finite times'),
+    (lambda s: s.states([1.0, -0.5]), r'from -0\.5 to 1\.0 s'),
+    (lambda s: s.states([1.0, np.inf]), r'from 1\.0 to inf s'),
     (lambda s: s.states('12'), '^states: got .*a sequence of numbers'),
     (lambda s: s.states(None), '^states: got .*a sequence of numbers'),
     (lambda s: s.states([1j]), '^states: got .*a sequence of numbers'),

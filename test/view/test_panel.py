@@ -165,6 +165,16 @@ def test_the_last_events_are_listed_the_newest_first(made):
     assert lines == whole[::-1][:EVENTS]
 
 
+def test_the_page_says_what_it_waits_for_and_nothing_when_it_does_not(made):
+    one, _ = made()
+    shown = []
+    for text in ('compiling <a>', ''):
+        one.wait(text)
+        shown.append(one._waiting.content)
+    assert '>compiling &lt;a&gt; ...<' in shown[0]
+    assert shown[1] == ''
+
+
 def test_numbers_are_lengths_and_what_is_unknown_is_said_so(made):
     one, controls = made(plays=True, end=4.0, marks=[])
     arrows = types.SimpleNamespace(omega=(2.0, 3.0, 6.0), momentum=(0.0, 3.0, 4.0),
