@@ -37,7 +37,7 @@ users run them, with steps of 1 ms or a tolerance of 1e-12, and are asked at one
 (`at`). Their cells give the error in the unit of that column (3.1 rad is upside down), or what
 they say: "no answer" within 20 s, "NaN" without a warning, "refuses", "fails". For contact the
 engines use their own models, and the integrators Coulomb's law as their user writes it
-(`study/hard_cases/contact.py`); opposite impulses are added to omega as they come.
+(`study/hard_cases/sliding_ball.py`); opposite impulses are added to omega as they come.
 """
 WORDS = {'NaN in silence': 'NaN', f'no answer in {PATIENCE:g} s': 'no answer'}
 TAIL = """

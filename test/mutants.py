@@ -52,7 +52,8 @@ from rigid_body_sim.compilation.environment import KERNEL_SOURCES
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PACKAGE = 'rigid_body_sim'
 EQUIVALENT = pathlib.Path(__file__).with_name('equivalent_mutants.yaml')
-ELSEWHERE = ('study/precision/peers/', 'numerics/make_functions.py', 'study/precision/make_')
+ELSEWHERE = ('study/precision/peers/', 'study/hard_cases/contact_engines.py',
+             'numerics/make_functions.py', 'study/precision/make_')
 """Not drawn from: other engines, which the tests do not install, and what makes stored tables."""
 WANTED = 0.95
 PATIENCE = 120      # s, a test; the tests next to a change take seconds

@@ -12,7 +12,13 @@ from near import near
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.study.hard_cases import behaviour, beside, contact, questions
+from rigid_body_sim.study.hard_cases import (
+    behaviour,
+    beside,
+    contact,
+    questions,
+    sliding_ball,
+)
 from rigid_body_sim.study.hard_cases.case import Question
 from rigid_body_sim.study.precision.runner import RefusedError, Run, Runner
 
@@ -194,7 +200,7 @@ def test_a_peer_that_crashes_or_never_ends_is_stopped(monkeypatch):
         'no answer in 0.2 s')
 
 
-G, A = contact.G, contact.A
+G, A = sliding_ball.G, sliding_ball.A
 ROLLING_AFTER = 2.0 / (7.0 * 0.25 * G)    # s, of a ball that slips at 1 m/s
 # what is asked for, and the answer; a ball that does not spin has slowed to (6/7) v half-way to
 # rolling, and slips at half its speed

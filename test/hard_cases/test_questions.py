@@ -15,6 +15,7 @@ from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import beside, contact
+from rigid_body_sim.study.hard_cases.sliding_ball import MASS, A, G
 from rigid_body_sim.study.hard_cases.table import CASES
 
 ASKED = {f'{case.group} {case.name}': case for case in CASES if case.asked}
@@ -147,10 +148,10 @@ class Ball:
     """The ball of this package as that of a peer."""
 
     def __init__(self, shot):
-        friction = f'sliding_friction: {{mu: {shot.mu}, g: {contact.G}}}'
+        friction = f'sliding_friction: {{mu: {shot.mu}, g: {G}}}'
         self._simulation = Simulation(parse_scene(
-            f'scene: ball\nbody: {{mass: {contact.MASS}, shape: {{solid_sphere: {{radius: '
-            f'{contact.A}}}}}}}\nconstraint: table\neffects: [{friction}]\ninitial: {{velocity: '
+            f'scene: ball\nbody: {{mass: {MASS}, shape: {{solid_sphere: {{radius: '
+            f'{A}}}}}}}\nconstraint: table\neffects: [{friction}]\ninitial: {{velocity: '
             f'{[*shot.v, 0.0]}, angular_velocity: {list(shot.omega)}}}\n'))
 
     def to(self, time):
@@ -158,7 +159,7 @@ class Ball:
 
     def push(self, change):
         if any(change):
-            self._simulation.impulse(force=[contact.MASS * change[0], contact.MASS * change[1], 0])
+            self._simulation.impulse(force=[MASS * change[0], MASS * change[1], 0])
 
     def velocities(self):
         state = self._simulation.state
@@ -177,7 +178,7 @@ def test_an_error_counts_in_speed_and_in_slip(monkeypatch):
     class Wrong(Ball):
         def velocities(self):
             (vx, vy), (wx, wy) = super().velocities()
-            return (vx + 0.03, vy - 0.04), (wx - 0.04 / contact.A, wy + 0.03 / contact.A)
+            return (vx + 0.03, vy - 0.04), (wx - 0.04 / A, wy + 0.03 / A)
 
     monkeypatch.setitem(contact.PEERS, 'ours', Wrong)
     found = [ASKED[name].asked.ask(peer()) for name in SHOTS]

@@ -16,7 +16,8 @@ from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import questions
 from rigid_body_sim.study.hard_cases.case import Case, Outcome
-from rigid_body_sim.study.hard_cases.contact import A, G, Shot, question
+from rigid_body_sim.study.hard_cases.contact import Shot, question
+from rigid_body_sim.study.hard_cases.sliding_ball import A, G
 
 EPSILON = np.finfo(float).eps
 RELAXING = ('scene: relaxing\nbody: {{mass: 1.0, inertia: {inertia}}}\nconstraint: free\n'
