@@ -51,3 +51,19 @@ def test_a_body_begins_with_the_first_message_of_any_topic_of_its_ticks(monkeypa
     assert asked == [([], 20, 100)]
     assert (found.start, found.end, found.ticks) == (20, 100, 9)
     assert (found.made_by, found.version, found.history) == ('sim_node', '1.2', 'all')
+
+
+@pytest.mark.parametrize(('entries', 'topics', 'held'), [
+    ([], ['pose', 'cmd_wrench'], True), ([], ['pose', 'cmd_impulse'], True), ([], ['pose'], False),
+    ([{'kind': 'begin', 'simulation': '{"rate": 500.0}', 'scene': ''}],
+     ['pose', 'cmd_wrench'], False)],
+    ids=['a wrench', 'an impulse', 'no commands', 'a journal tells when they acted'])
+def test_without_a_journal_a_wrench_may_be_held_where_commands_were_recorded(
+        entries, topics, held, monkeypatch):
+    begun = []
+    monkeypatch.setattr(source, '_latched_scene', lambda recording, topics: '')
+    monkeypatch.setattr(source, '_estimated_rate', lambda recording, topics: 250.0)
+    monkeypatch.setattr(source, 'history', lambda entries, events, begin, end: begun.append(begin))
+    run, begin, _ = source._run(None, dict.fromkeys(topics), entries, 0, 9)
+    assert (begun[0].held, begun[0].rate) == (held, 500.0 if entries else 250.0)
+    assert (run, begin) == (({'rate': 500.0}, entries[0]) if entries else ({}, {}))
