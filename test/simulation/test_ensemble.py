@@ -398,3 +398,21 @@ def test_expected_errors_that_nothing_tells_are_refused():
                          (steps, 'fixed steps are not tried')):
         with pytest.raises(BadInput, match=message):
             one.expected_errors()
+
+
+def test_among_those_that_a_tolerance_is_looked_for_is_the_quickest_body(monkeypatch):
+    """Others are at even distances, the first and the last among them; the last time counts."""
+    looked_at = []
+
+    def fill(choice, starts, times, columns, out, report):
+        looked_at.append((starts[:, 0].tolist(), times.tolist()))
+    monkeypatch.setattr(module, '_fill', fill)
+    monkeypatch.setattr(module.Ensemble, '_apart', lambda self, finer, bodies: np.full(8, 1e-7))
+    choice = types.SimpleNamespace(method='taylor', tolerance=1e-6, accuracy=1e-6,
+                                   finer=lambda: None)
+    starts = np.zeros((22, 14))
+    starts[:, 0] = range(22)
+    starts[:, 5:8] = 1.0, 2.0, 2.0
+    starts[5, 5:8] = 0.0, 0.0, -4.0
+    assert module._for_all(choice, starts, np.array([1.0, 3.0, 2.0])) is choice
+    assert looked_at == [([5.0, 0.0, 3.0, 7.0, 10.0, 14.0, 17.0, 21.0], [3.0])]
