@@ -2,6 +2,7 @@
 """Settings of a choice, finer ones, and rates of dissipation, by hand."""
 
 import math
+import types
 
 import numpy as np
 import pytest
@@ -120,3 +121,31 @@ def test_the_rounding_beside_the_error_of_a_scene_nearly_this_one_counts_what_a_
     found = module._closed_form(scene, 8.0)
     assert (found.motion, found.scene, found.error) == ('a motion', 'a scene', 1e-12)
     assert found.floor == near(2.0 ** -53 * (4.0 + 24.0 + 16.0), rel=1e-15)
+
+
+@pytest.mark.parametrize(('method', 'takes', 'parts'), [
+    ('dop8', None, ['prototype 0 1 2']), ('exact', None, ['prototype 0 1 2']),
+    ('exact', {0, 1, 2}, ['prototype 0 1 2']), ('exact', {1}, ['prototype 1', 'general 0 2'])],
+    ids=['it steps', 'every start has the motion', 'all have it', 'some have it'])
+def test_bodies_that_do_not_have_the_motion_go_by_the_general_method(
+        method, takes, parts, monkeypatch):
+    asked = []
+
+    class Solver:
+        motion = types.SimpleNamespace(takes=takes)
+
+        def __init__(self, name):
+            self.name = name
+
+        def takes(self, start):
+            return start[0] in takes
+
+        def many(self, starts, times, out):
+            asked.append(' '.join((self.name, *(f'{start[0]:g}' for start in starts))))
+            out[:] = starts[:, np.newaxis, :1]
+    monkeypatch.setattr(module.Choice, '_general', lambda self, wrench: Solver('general'))
+    choice = module.Choice(None, method, 1e-9, None, 1.0, 1e-9, Solver('prototype'), None)
+    starts, out = np.arange(3.0)[:, np.newaxis] * np.ones(14), np.full((3, 2, 1), np.nan)
+    choice.many(starts, np.array([1.0, 2.0]), out)
+    assert asked == parts
+    assert out[:, :, 0].tolist() == [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
