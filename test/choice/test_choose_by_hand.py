@@ -123,22 +123,22 @@ def test_the_rounding_beside_the_error_of_a_scene_nearly_this_one_counts_what_a_
     assert found.floor == near(2.0 ** -53 * (4.0 + 24.0 + 16.0), rel=1e-15)
 
 
-@pytest.mark.parametrize(('method', 'takes', 'parts'), [
+@pytest.mark.parametrize(('method', 'able', 'parts'), [
     ('dop8', None, ['prototype 0 1 2']), ('exact', None, ['prototype 0 1 2']),
     ('exact', {0, 1, 2}, ['prototype 0 1 2']), ('exact', {1}, ['prototype 1', 'general 0 2'])],
     ids=['it steps', 'every start has the motion', 'all have it', 'some have it'])
 def test_bodies_that_do_not_have_the_motion_go_by_the_general_method(
-        method, takes, parts, monkeypatch):
+        method, able, parts, monkeypatch):
     asked = []
 
     class Solver:
-        motion = types.SimpleNamespace(takes=takes)
+        motion = types.SimpleNamespace(takes=able)
 
         def __init__(self, name):
             self.name = name
 
         def takes(self, start):
-            return start[0] in takes
+            return start[0] in able
 
         def many(self, starts, times, out):
             asked.append(' '.join((self.name, *(f'{start[0]:g}' for start in starts))))
