@@ -24,7 +24,8 @@ from figures.style import IMAGES, save  # noqa: E402
 # image -> scene, seconds, figure of the report
 RUNS = {'run': ('tennis_racket', 20, 'overview'), 'recordings': ('heavy_top', 20, 'spectrum')}
 NO_FIGURES = (
-    '__init__', 'bars', 'bodies', 'error_time', 'marks', 'page_tables', 'style', 'tables')
+    '__init__', 'bars', 'bodies', 'error_time', 'marks', 'more_bodies', 'page_tables', 'style',
+    'tables')
 DRAWN = sorted(path.stem for path in (HERE / 'figures').glob('*.py')
                if path.stem not in NO_FIGURES)
 

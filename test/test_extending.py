@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/extending.md: its files are written to a temporary package, registered and run.
+"""docs/extending: the files of its pages are written to a temporary package, registered and run.
 
 One test compiles them; the others run without numba, which is quicker.
 """
@@ -8,7 +8,6 @@ import dataclasses
 import importlib
 import math
 import pathlib
-import re
 import sys
 import types
 from typing import ClassVar
@@ -44,9 +43,9 @@ from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.testing import check_effect
 from rigid_body_sim.theory.prediction import expectation
 
-PAGE = pathlib.Path(__file__).resolve().parent.parent / 'docs' / 'extending.md'
-FILES = dict(re.findall(r'^```\w+\n# (more_bodies/\S+)\n(.*?)^```$', PAGE.read_text(),
-                        re.MULTILINE | re.DOTALL))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'docs'))
+from figures.more_bodies import FILES
+
 EFFECTS = {'compass': 'more_bodies.compass:Compass', 'paddle': 'more_bodies.paddle:Paddle'}
 TOP = """scene: top
 body: {mass: 1.0, inertia: [0.03, 0.03, 0.01], inertia_about: origin, center_of_mass: [0, 0, 0.1]}
@@ -58,7 +57,7 @@ initial: {euler_zyz: [0.0, 0.5, 0.0], angular_velocity: [0, 0, 60]}
 
 @pytest.fixture(scope='module')
 def package(tmp_path_factory):
-    """Write the files of the page, install the entry points, add the lines to the tables."""
+    """Write the files of the pages, install the entry points, add the lines to the tables."""
     folder = tmp_path_factory.mktemp('site')
     for name, text in {'more_bodies/__init__.py': '', **FILES}.items():
         path = folder / name
@@ -89,7 +88,7 @@ def of(name):
     return importlib.import_module(f'more_bodies.{name}')
 
 
-def test_the_page_has_every_kind_of_file():
+def test_the_pages_have_every_kind_of_file():
     assert {pathlib.PurePath(name).stem for name in FILES} == {
         'compass', 'paddle', 'ball_joint', 'slowing_sphere', 'ralston3', 'compass_needle'}
 

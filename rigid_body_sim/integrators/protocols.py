@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The contracts of this folder: what a method, a method family and a solver offer.
 
-docs/extending.md shows how to add a method. A method is a module of methods/ with one line in the
-table of ``integrators/__init__.py``; a family is a module of families/. The table (registry.py)
-refuses a method that lacks a declaration, so none fails in a run.
+docs/extending/method.md shows how to add a method. A method is a module of methods/ with one line
+in the table of ``integrators/__init__.py``; a family is a module of families/. The table
+(registry.py) refuses a method that lacks a declaration, so none fails in a run.
 """
 
 from typing import Any, Protocol, runtime_checkable

@@ -47,7 +47,7 @@ class Methods(collections.UserDict):
                            'method that takes an accuracy: steps end where sliding does')
         for control in page.TAKES:
             refuse_without(page, asks[control], where,
-                           f'its family needs them for {control!r} (docs/extending.md)')
+                           f'its family needs them for {control!r} (docs/extending/method.md)')
         super().__setitem__(name, page)
         self._changed()
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Motions solved in closed form; the one that absorbs all of a scene makes the scene exact.
 
-protocol.py says what a motion offers. docs/extending.md adds one step by step.
+protocol.py says what a motion offers. docs/extending adds one step by step.
 
 It may import ``mechanics`` and what lies below.
 """

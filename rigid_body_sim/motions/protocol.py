@@ -2,7 +2,7 @@
 """The contract of a motion: what a closed form offers to the exact solver.
 
 A motion is a module of this folder with one line in the table of ``motions/__init__.py``. Members
-that it lacks are declared as None. docs/extending.md adds one step by step.
+that it lacks are declared as None. docs/extending adds one step by step.
 """
 
 from collections.abc import Callable

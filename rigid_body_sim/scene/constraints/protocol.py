@@ -2,7 +2,7 @@
 """The contract of a constraint: what it declares, and what it makes of a body.
 
 A constraint is a frozen dataclass that inherits :class:`Constraint`, one file in this folder.
-docs/extending.md adds one step by step.
+docs/extending adds one step by step.
 """
 
 import enum

@@ -3,7 +3,7 @@
 
 An effect is a frozen dataclass that inherits :class:`Effect`. It overrides the views that it has;
 a view that it does not override is None, and code that needs the view refuses the effect.
-docs/extending.md adds an effect step by step.
+docs/extending adds an effect step by step.
 """
 
 import inspect
