@@ -36,13 +36,16 @@ def sides(monkeypatch, ratio, across=(3e-6, 4e-6)):
         monkeypatch.setattr(
             sleeping_top, name, lambda run, top, *given, name=name: [(name, *given)])
     run = types.SimpleNamespace(scene=types.SimpleNamespace(name='top'),
-                                at=lambda _: types.SimpleNamespace(
-                                    angular_velocity=np.array([*across, 99.0])))
+                                at=lambda time: types.SimpleNamespace(
+                                    angular_velocity=np.array([*across, 99.0]) + time))
     return list(sleeping_top.check(run))
 
 
 @pytest.mark.parametrize(('ratio', 'own'), [
-    (4.0, [('_stable', 12.0, 5e-6, 4.0)]), (0.25, [('_falling', 3.0, 5e-6, 0.25)]),
+    (4.0, [('_stable', 12.0, 5e-6, 4.0)]),
+    # nine digits name it, but its own spin is run
+    (2.0000000044, [('_stable', 6.0 * math.sqrt(2.0000000044), 5e-6, 2.000000004)]),
+    (0.25, [('_falling', 3.0, 5e-6, 0.25)]),
     (1.0, []), (1.0 + 5e-7, []), (1.0 - 8e-7, []), (1.001, []),
     (1.0 + 1.2e-6, [('_stable', 6.0 * math.sqrt(1.0 + 1.2e-6), 5e-6, 1.0000012)]),
     (1.0 - 2e-6, [('_falling', 6.0 * math.sqrt(1.0 - 2e-6), 5e-6, 0.999998)])])
