@@ -207,6 +207,52 @@ def test_a_top_knows_no_axis_across_its_own():
                 of(omega, up, I1, I3, MGL), 1e-12)
 
 
+@pytest.mark.parametrize(('omega', 'up'), [
+    ((0.4, -1.3, 20.0), (0.36, 0.48, 0.8)), ((-2.0, 0.7, 35.0), (0.48, -0.36, -0.8))])
+def test_a_top_below_its_pivot_is_one_above_it_seen_from_the_other_end(omega, up):
+    """Half a turn about axis 1 of the body renames axis 3, and M g l changes its sign."""
+    renamed = np.array([1.0, -1.0, -1.0])
+    for of in (theory.time_between_turning_points, theory.mean_precession):
+        # measured: at most 5e-13
+        assert of(omega * renamed, up * renamed, I1, I3, -MGL) == near(
+            of(omega, up, I1, I3, MGL), 1e-11)
+
+
+@pytest.mark.parametrize(('beta', 'P_alpha', 'P_gamma'), STATES)
+def test_turning_points_below_the_pivot_are_those_above_it_from_the_other_end(
+        beta, P_alpha, P_gamma):
+    E = theory.energy(beta, 1.5, P_alpha, P_gamma, I1, I3, MGL)
+    least, greatest = theory.turning_points(E, P_alpha, P_gamma, I1, I3, MGL)
+    assert least < beta < greatest
+    assert theory.turning_points(E, P_alpha, -P_gamma, I1, I3, -MGL) == near(
+        (np.pi - greatest, np.pi - least), 1e-11)    # measured: 2e-16
+
+
+@pytest.mark.parametrize(('share', 'defined'), [(0.9e-4, False), (1.1e-4, True)])
+def test_precession_is_not_defined_a_ten_thousandth_of_the_nutation_off_the_vertical(
+        share, defined):
+    """Released at rest at u = cos(beta), it falls to u - 1/2 if P_gamma^2/K = 2 (1 - (u - 1/2)^2).
+
+    K = 2 I1 M g l.
+    """
+    u = 1.0 - 0.5 * share
+    P_gamma = np.sqrt(4.0 * I1 * MGL * (1.0 - (u - 0.5) ** 2))
+    omega = np.array([0.0, 0.0, P_gamma / I3])
+    up = np.array([-np.sqrt(1.0 - u * u), 0.0, u])
+    renamed = np.array([1.0, -1.0, -1.0])
+    rates = (theory.mean_precession(omega, up, I1, I3, MGL),
+             theory.mean_precession(omega * renamed, up * renamed, I1, I3, -MGL))
+    assert [rate is not None for rate in rates] == [defined] * 2
+
+
+def test_without_weight_or_through_the_vertical_no_precession_is_defined():
+    for omega, up, Mgl in (((0.4, -1.3, 20.0), (0.36, 0.48, 0.8), 0.0),
+                           ((0.4, 0.0, 20.0), (0.0, 0.0, 1.0), MGL)):
+        assert theory.mean_precession(omega, up, I1, I3, Mgl) is None
+    assert theory.time_between_turning_points(
+        (0.4, -1.3, 20.0), (0.36, 0.48, 0.8), I1, I3, 0.0) is None
+
+
 def test_sleeping_top_expansion():
     """V_eff about 0: stiffness by differentiation, and the quartic term at the threshold.
 

@@ -33,3 +33,13 @@ def test_points_of_a_quadrature_fill_the_shape_evenly(name):
     if half[2] and name not in ('spherical shell', 'solid sphere', 'ellipsoid'):
         fourth = (places[2] ** 4 * weight).sum() / total
         assert fourth == near(half[2] ** 4 / 5.0, rel=1e-13)
+
+
+@pytest.mark.parametrize('method', inertia_tensors.METHODS)
+def test_every_shape_has_the_moments_of_the_notes(method):
+    rows = list(inertia_tensors.check(method))
+    assert [row.name for row in rows] == [
+        *HALVES, 'rod about its end', 'rod about its end, by the parallel axis']
+    for row in rows:
+        assert (row.tolerance, row.unit, row.absolute) == (1e-14, 'kg m^2', False)
+        assert row.passed

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from near import near
 
+from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.study.scenes import experiment as room
 from rigid_body_sim.study.scenes.experiment import Experiment
 from rigid_body_sim.study.scenes.limits import limit
 from rigid_body_sim.study.scenes.quantity import Quantity
@@ -77,3 +79,21 @@ def test_a_derivative_is_that_of_the_reading(order, expected):
     one = experiment(lambda time: math.sin(2.0 * time) / 2.0 ** order)
     assert one.derivative(lambda states: states, 1.0, 0.3, order) == pytest.approx(
         expected, abs=1e-9)
+
+
+def test_a_polynomial_of_degree_16_is_differentiated_without_error():
+    """By hand: T_16 has the slope 0 and the second derivative -16^2 in the middle."""
+    one = experiment(lambda time: math.cos(16.0 * math.acos(2.0 * (time - 0.25))))
+    # measured: no error
+    assert one.derivative(lambda states: states, 0.25, 0.5, 2) == near(-1024.0, rel=1e-10)
+
+
+def test_a_variant_is_the_changed_scene_by_the_same_method_if_that_can_run_it(monkeypatch):
+    monkeypatch.setattr(room, 'Simulation', lambda *given: given)
+    run = Experiment(load_scene('driven_body'), 'exact', 1e-7)
+    other = run.variant({'torque.value': np.array([0.0, 0.0, 0.25])})
+    assert other.simulation == (other.scene, 'exact', 1e-7)
+    assert tuple(other.scene.effect('torque').values[0]) == (0.0, 0.0, 0.25)
+    other = run.variant({'torque.value': [0.0, 0.0, 0.1]}, {'body.inertia': '[0.8, 1.0, 1.3]'})
+    assert other.simulation == (other.scene, 'dop8', 1e-7)
+    assert tuple(other.scene.body.about_center.moments) == (0.8, 1.0, 1.3)

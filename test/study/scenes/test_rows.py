@@ -11,12 +11,13 @@ import types
 import kept
 import numpy as np
 import pytest
+from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import States
-from rigid_body_sim.study.scenes import experiment
+from rigid_body_sim.study.scenes import convex_body, experiment, heavy_top, sleeping_top
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 
 PACE = {'chandler_wobble': 6e-7, 'kater_pendulum': 6.0, 'kater_pendulum_from_p': 6.0,
@@ -132,6 +133,73 @@ def test_what_no_formula_is_for_is_refused(name, changes, monkeypatch):
     run = experiment.Experiment(load_scene(name, [changes]), 'exact')
     with pytest.raises(BadInput, match=f'^{name}: '):
         list(SYSTEMS[name].check(run))
+
+
+class Measured(Exception):
+    """The check goes on to measure."""
+
+
+def measured(_):
+    raise Measured
+
+
+@pytest.mark.parametrize(('scene', 'beta', 'difference', 'reaches'), [
+    (heavy_top, 0.0201, 1.0, True), (heavy_top, 0.0199, 1.0, False),
+    (heavy_top, math.pi - 0.0201, 1.0, True), (heavy_top, math.pi - 0.0199, 1.0, False),
+    (heavy_top, math.pi / 2, 1.0, True),
+    # 6e-6 is 1e-6 of sqrt(I1 M g l) = 6 kg m^2/s
+    (heavy_top, 1.0, 6.5e-6, True), (heavy_top, 1.0, 5.5e-6, False),
+    (heavy_top, 1.0, -6.5e-6, True), (heavy_top, 1.0, -5.5e-6, False),
+    (sleeping_top, 0.9e-6, 0.0, True), (sleeping_top, 1.1e-6, 0.0, False)])
+@pytest.mark.parametrize('sense', [1.0, -1.0])
+def test_a_top_is_off_the_vertical_or_upright(monkeypatch, scene, beta, difference, reaches,
+                                              sense):
+    top = types.SimpleNamespace(beta=beta, P_gamma=2.0, P_alpha=sense * (2.0 + difference),
+                                I1=4.0, I3=1.0, Mgl=9.0, momenta=None)
+    monkeypatch.setattr(scene, 'Top', lambda _: top)
+    run = types.SimpleNamespace(scene=types.SimpleNamespace(name='top'), at=measured)
+    with pytest.raises(Measured if reaches else BadInput):
+        next(scene.check(run))
+
+
+def inclined(tilts):
+    """Return states of a disk whose axis is off the level by tilts, rad."""
+    half = 0.25 * math.pi - 0.5 * np.asarray(tilts)
+    nothing = np.zeros(len(half))
+    return types.SimpleNamespace(
+        orientation=np.stack([nothing, np.sin(half), nothing, np.cos(half)], axis=1))
+
+
+@pytest.mark.parametrize(('shape', 'rolls', 'spins'), [
+    # squares of w3, v^2 = g R/3 and g R/4, and of W, 4 g/(5 R) and 2 g/(3 R)
+    ('disk', 1.0 / 3.0, 4.0 / 5.0), ('hoop', 1.0 / 4.0, 2.0 / 3.0)])
+def test_an_upright_disk_is_tried_one_percent_above_and_below_its_thresholds(
+        shape, rolls, spins):
+    scene = load_scene('rolling_disk', [f'body.shape={{{shape}: {{radius: 0.5}}}}'])
+    g, shares = scene.effect('gravity').g, []
+
+    def variant(changes):
+        """Return the linear motion: x'' = (threshold^2 - rate^2) x, to a factor."""
+        assert changes['initial.euler_zyz'] == [0.0, near(0.5 * math.pi, 1e-15), 0.0]
+        spin, seed, roll = changes['initial.angular_velocity']
+        assert 0.0 < seed < 1e-5 and (spin == 0.0 or roll == 0.0)
+        rate, threshold = (roll, rolls * g / 0.5) if roll else (spin, spins * g / 0.5)
+        shares.append(abs(rate) / math.sqrt(threshold))
+        pace = math.sqrt(abs(threshold - rate * rate))
+        grow = np.sinh if rate * rate < threshold else np.sin
+        return types.SimpleNamespace(states=lambda times: inclined(
+            -np.minimum(seed / pace * grow(pace * times), 0.5)))
+    run = types.SimpleNamespace(scene=scene, variant=variant)
+    assert all(row.passed for row in convex_body._upright(run, ''))
+    assert shares == near([1.01, 0.99, 1.01, 0.99], rel=1e-14)    # measured: 3e-16
+
+
+@pytest.mark.parametrize(('tilt', 'grows'), [
+    (1.05e-4, 1.0), (-1.05e-4, 1.0), (0.95e-4, 0.0), (-0.95e-4, 0.0)])
+def test_a_tilt_has_grown_where_it_is_once_beyond_a_ten_thousandth(tilt, grows):
+    run = types.SimpleNamespace(scene=load_scene('rolling_disk'), variant=lambda _: (
+        types.SimpleNamespace(states=lambda times: inclined(tilt * (times == times[-1])))))
+    assert [row.measured for row in convex_body._upright(run, '')] == [grows] * 4
 
 
 def _kept(row):
