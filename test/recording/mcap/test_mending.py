@@ -17,7 +17,7 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.records import Channel, Chunk, Message
+from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from soak import SOAK
@@ -25,11 +25,11 @@ from soak import SOAK
 from rigid_body_sim.recording.mcap import mending
 from rigid_body_sim.recording.mcap.bytes import MemoryBytes
 from rigid_body_sim.recording.mcap.chunks import message
-from rigid_body_sim.recording.mcap.compression import compressor, zstd_length
+from rigid_body_sim.recording.mcap.compression import compressor, records_of, zstd_length
 from rigid_body_sim.recording.mcap.forms import record_end
 from rigid_body_sim.recording.mcap.found import Damage
 from rigid_body_sim.recording.mcap.mending import Losses, mend
-from rigid_body_sim.recording.mcap.records import HEAD
+from rigid_body_sim.recording.mcap.records import HEAD, of_bytes, to_bytes
 from rigid_body_sim.recording.mcap.walk import heads, walk
 
 COUNT = 24
@@ -259,6 +259,26 @@ def test_a_channel_that_is_not_on_both_sides_of_a_damage_does_not_keep_the_other
     assert mending._count(damage, scan) == (3, 'counted')
     after.counts[2] = 1    # on both sides, and too short to tell whether its numbers count
     assert mending._count(damage, scan) == (0, 'unknown')
+
+
+@pytest.mark.parametrize(('sure', 'described', 'all_kept'), [
+    (True, True, True), (False, False, True), (False, True, False)])
+def test_a_chunk_of_which_descriptions_may_be_wrong_is_written_without_what_is_no_message(
+        sure, described, all_kept):
+    other = to_bytes(Schema(1, b'', '', 'a')) * described + HEAD.pack(0x80, 1) + b'1'
+    told = [message(1, k, 5 + k, 0, b'x') for k in range(2)]
+    content = told[0] + other + told[1]
+    offsets, others = walk(content)
+    found = types.SimpleNamespace(offsets=offsets, others=others, records=content,
+                                  compressed=content, compression='', sure=sure)
+    with tempfile.TemporaryFile() as stream:
+        mending._Composer(stream.fileno(), 0)._rescued(found, doubtful=not described)
+        stream.seek(0)
+        written = stream.read()
+    chunk = of_bytes(Chunk, written[HEAD.size:])
+    assert records_of(chunk) == (content if all_kept else b''.join(told))
+    assert (chunk.message_start_time, chunk.message_end_time) == (5, 6)
+    assert bool(chunk.uncompressed_crc) == described    # none vouches for what is doubtful
 
 
 @pytest.mark.parametrize(('of', 'last', 'expected'), [
