@@ -10,7 +10,7 @@ from near import near
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.study.hard_cases import behaviour
-from rigid_body_sim.study.hard_cases.contact import MASS, A, G
+from rigid_body_sim.study.hard_cases.sliding_ball import MASS, A, G
 from rigid_body_sim.theory import billiard
 
 
