@@ -28,6 +28,7 @@ from rigid_body_sim.integrators.marching import contact_march, contact_step, con
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.scene.surfaces import TORUS
 from rigid_body_sim.simulation.simulation import Simulation
 
 pytestmark = pytest.mark.without_numba
@@ -415,3 +416,209 @@ def test_a_slip_that_fades_pivots_after_so_many_steps_if_it_settles(monkeypatch)
         assert bool(phase.meta[contact_march.FADED]) is (slip < 1.0)
         if status == contact_march.SETTLED:
             assert phase.meta[[contact_march.STEPS, contact_march.FADED]].tolist() == [3.0, 3.0]
+
+
+# -- the march on made-up steps -------------------------------------------------------------------
+
+WATCHED = contact_march.WATCHED
+
+
+def driven(monkeypatch, phase, took=lambda h: h, errors=(), watched=lambda time: {},
+           pace=lambda time: 1.0, omega=(1.0, 0.0, 0.0), most=math.inf, bad=()):
+    """Let a phase march by made-up steps; return (list of the sizes that it tries, phase).
+
+    A step of size h goes on by `took` (s), to this omega; the tries tell these errors, and those
+    whose number is in `bad` are impossible. Numbers that are watched are 1, but for k -> number
+    at a time. A number that falls below zero does so at 0.5 s.
+    """
+    tried, told = [], iter(errors)
+
+    def row_of(time, row):
+        row[:] = 0.0
+        row[WATCHED:WATCHED + WATCHES], row[PACE] = 1.0, pace(time)
+        for k, number in watched(time).items():
+            row[WATCHED + k] = number
+
+    def step_from(p, w, y, lost, h):
+        tried.append(h)
+        fresh = w[contact_march.FRESH]
+        fresh[:SIZE], fresh[OMEGA:U], elapsed = y, omega, took(h)
+        fresh[TIME] = y[TIME] + elapsed
+        for i in range(1, contact_march.STAGES):
+            row_of(y[TIME] + elapsed * i / contact_march.STAGES, w[i])
+        return math.inf if len(tried) - 1 in bad else 0.0
+
+    def first_zero(p, w, y, lost, h, k, begin):
+        assert begin == watched(y[TIME])[k]
+        return 0.5 - y[TIME]
+    for name, does in (('step_from', step_from), ('error_of', lambda *_: next(told, 0.0)),
+                       ('rate', lambda p, y, row: row_of(y[TIME], row)),
+                       ('longest', lambda w, h: most * h), ('first_zero', first_zero)):
+        monkeypatch.setattr(KERNELS, name, does)
+    return tried, phase
+
+
+def short(mode, planned, room=1, **numbers):
+    """Return a phase with room for so many steps, and these numbers of its meta and p."""
+    phase = Phase(mode)
+    phase.sizes = phase.sizes[:room]
+    phase.meta[contact_march.PLANNED] = planned
+    for name, number in numbers.items():
+        given = phase.p if name in ('SWIFT', 'KIND', 'DRY', 'VISCOUS', 'FILM') else phase.meta
+        given[getattr(contact_march, name)] = number
+    return phase
+
+
+SLOW = 1e-12
+
+
+@pytest.mark.parametrize(('mode', 'took', 'pace', 'faded', 'allowed'), [
+    (ROLLING, 1.0, 1.0, 0, 2e-12 + 2e-17), (SLIDING, 0.5, 1.0, 0, 1e-12 + 2e-17),
+    (SLIDING, 100.0, 1.0, 0, 64.0 * 2e-12 + 2e-17), (SLIDING, 100.0, 0.5, 0, 64e-12 + 2e-17),
+    (SLIDING, 1e-9, 1e-3, 2000, 2e-17 + 2e-21),
+    (SLIDING, 1e-9, 1e-3, 2001, 2e-17 + 2e-21 + 2.0 ** -52 * 2.0 * 4.0 * 3.0),
+    (SLIDING, SLOW, SLOW, 2001, 2e-17 + 2.0 * SLOW * SLOW + 1e-3 * SLOW / 3.0)])
+def test_a_step_may_err_by_its_share_of_the_time(mode, took, pace, faded, allowed, monkeypatch):
+    """1e-12 a second and 2e-17; a step of a slip that grows up to 64 times the time at its start.
+
+    A slip that fades for more than 2000 steps may err by the rounding of its pace, too, beside
+    4 rad/s and 3 m/s, and by a thousandth of what it is.
+    """
+    for share, again in ((0.999, []), (1.001, [1.8 * 1.001 ** (-1.0 / 7.0)])):
+        tried, phase = driven(monkeypatch, short(mode, 2.0, SWIFT=3.0, RATE=4.0, FADED=faded),
+                              lambda h: took * h, [share * allowed],
+                              pace=lambda time: 2.0 * pace if time else pace)
+        assert phase.march(0.0) == contact_march.RUNNING
+        assert tried == near([2.0, *again], rel=1e-12)
+
+
+@pytest.mark.parametrize(('errors', 'most', 'tried', 'planned'), [
+    ([], math.inf, [1.0], 4.0), ([], 1.5, [1.0], 1.5), ([math.inf], 0.3, [1.0, 0.1], 0.03),
+    ([math.inf], 0.05, [1.0, 0.05], 0.0025), ([1e-12 + 2e-17], 1.0, [1.0], 0.9),
+    ([math.nan], 1.0, [1.0, 0.1], 0.1)])
+def test_the_next_step_is_no_longer_than_the_method_takes(errors, most, tried, planned,
+                                                          monkeypatch):
+    found, phase = driven(monkeypatch, short(ROLLING, 1.0), errors=errors, most=most)
+    assert phase.march(0.0) == contact_march.RUNNING
+    assert found == near(tried, rel=1e-14)
+    assert phase.meta[contact_march.PLANNED] == near(planned, rel=1e-14)
+
+
+def test_a_phase_fails_where_no_step_is_small_enough_or_time_stands_still(monkeypatch):
+    """Time may stand still in a slip, where it is an unknown; that one ends where no room is."""
+    for tell in ({'errors': [math.inf] * 100}, {'bad': range(100)}):
+        tried, phase = driven(monkeypatch, short(ROLLING, 1.0), **tell)
+        assert phase.march(0.0) == contact_march.FAILED
+        assert tried == near(0.1 ** np.arange(contact_march.TRIALS), rel=1e-12)
+        assert phase.meta[contact_march.STEPS] == 0.0
+    for mode, status, steps in ((ROLLING, contact_march.FAILED, 0),
+                                (SLIDING, contact_march.RUNNING, 3)):
+        _, phase = driven(monkeypatch, short(mode, 1.0, 3), lambda h: 0.0)
+        assert phase.march(0.0) == status
+        assert phase.meta[[contact_march.STEPS, contact_march.JAMMED]].tolist() == [steps, 0.0]
+
+
+@pytest.mark.parametrize(('kept', 'steps'), [(4096, 2), (2, 9)])
+def test_a_march_ends_where_no_point_can_be_kept_but_where_others_can_be_dropped(
+        kept, steps, monkeypatch):
+    monkeypatch.setattr(KERNELS, 'KEPT', kept)
+    _, phase = driven(monkeypatch, short(ROLLING, 1.0, 9), most=1.0)
+    phase.store = phase.store[:2]
+    assert phase.march(99.0) == contact_march.RUNNING
+    assert phase.meta[contact_march.STEPS] == steps
+
+
+def test_in_flight_only_the_gap_is_looked_at_for_dips(monkeypatch):
+    """A number that begins at zero and ends above it is no event, as in other phases."""
+    _, phase = driven(monkeypatch, short(FLIGHT, 1.0), watched=lambda time: {
+        contact_march.GRIP: 0.0 if time == 0.0 else -1.0 if time < 1.0 else 1.0})
+    assert phase.march(0.0) == contact_march.RUNNING
+
+
+@pytest.mark.parametrize('tell', [{'errors': [0.0, 1.01e-12]}, {'bad': [2]}])
+def test_a_part_of_a_step_that_errs_is_gone_in_two(tell, monkeypatch):
+    """Up to an event at 0.5 s; each step that is looked through is made once more."""
+    tried, phase = driven(monkeypatch, short(ROLLING, 1.0, 9), **tell,
+                          watched=lambda time: {contact_march.GRIP: 1.5 - 3.0 * time})
+    assert phase.march(9.0) == contact_march.LET_GO
+    assert tried == [1.0, 1.0, 0.5, 0.25, 1.0, 1.0, 0.25]
+    assert phase.front[TIME] == 0.5
+    assert phase.sizes[:2].tolist() == [0.25, 0.25]
+    assert phase.meta[[contact_march.STEPS, contact_march.COUNT]].tolist() == [2.0, 2.0]
+
+
+def test_an_event_at_the_end_of_a_step_ends_the_phase(monkeypatch):
+    tried, phase = driven(monkeypatch, short(ROLLING, 0.5, 9),
+                          watched=lambda time: {contact_march.GRIP: 1.5 - 3.0 * time})
+    assert phase.march(9.0) == contact_march.LET_GO
+    assert (tried, phase.front[TIME]) == ([0.5] * 3, 0.5)
+
+
+@pytest.mark.parametrize(('dry', 'why'), [
+    (0.1, contact_march.HELD), (0.0, contact_march.RUNNING)])
+def test_only_dry_friction_holds_a_rolling(dry, why):
+    phase = Phase(watch5=(1.0, -2.0, 0.0))
+    phase.p[contact_march.DRY] = dry
+    assert phase.march(3.0) == why
+    assert why != contact_march.HELD or phase.front[TIME] == near(0.5, rel=4e-16)
+
+
+@pytest.mark.parametrize(('numbers', 'low', 'took', 'tilt', 'steps'), [
+    ({'DRY': 1.0}, 4.0, [3.6e-6] * 9, 0.0, 4), ({'VISCOUS': 1.0}, 4.0, [3.6e-6] * 9, 0.0, 4),
+    ({'FILM': 1.0}, -4.0, [3.6e-6] * 9, 0.0, 4), ({'DRY': 1.0}, 4.0, [4.4e-6] * 9, 0.0, 0),
+    ({}, 4.0, [3.6e-6] * 9, 0.0, 0), ({'DRY': 1.0, 'KIND': 0.0}, 4.0, [3.6e-6] * 9, 0.0, 0),
+    ({'DRY': 1.0}, 4.0, [3.6e-6] * 9, 1e-3, 0), ({'DRY': 1.0}, 4.0, [3.6e-6] * 9, 2.5e-4, 4),
+    ({'DRY': 1.0}, 4.0, ([3.6e-6] * 3 + [4.4e-6]) * 2 + [3.6e-6], 0.0, 0)])
+def test_a_ring_that_is_almost_flat_is_left_after_many_steps_in_a_row_that_are_short(
+        numbers, low, took, tilt, steps, monkeypatch):
+    """Below 1e-5 of the time sqrt(4)/(5 rad/s) in which it falls; only where a rolling rubs."""
+    monkeypatch.setattr(KERNELS, 'CROWD', 3)
+    sizes, numbers = iter(took), {'KIND': TORUS, 'RATE': 5.0} | numbers
+    _, phase = driven(monkeypatch, short(ROLLING, 1.0, 9, **numbers), lambda h: next(sizes),
+                      watched=lambda time: {contact_march.STOPS: low}, most=1.0)
+    phase.front[0] = tilt    # half of the inclination
+    assert phase.march(9.0) == (contact_march.FAILED if steps else contact_march.RUNNING)
+    assert phase.meta[contact_march.STEPS] == (steps or 9)
+
+
+@pytest.mark.parametrize(('mode', 'before', 'after', 'stuck'), [
+    (SLIDING, 9.0, 0.9, True), (SLIDING, 9.0, 1.1, False), (SLIDING, 0.5, 0.9, False),
+    (ROLLING, 9.0, 0.9, False)])
+def test_a_slip_that_falls_below_the_rounding_of_the_speeds_is_dead(mode, before, after, stuck,
+                                                                    monkeypatch):
+    """Below 2^-56 of 3 m/s; one that grows, from less than that, is not."""
+    least = 3.0 * 2.0 ** -56
+    _, phase = driven(monkeypatch, short(mode, 1.0, SWIFT=3.0),
+                      pace=lambda time: least * (after if time else before))
+    assert phase.march(0.0) == (contact_march.STUCK if stuck else contact_march.RUNNING)
+
+
+@pytest.mark.parametrize(('mode', 'share', 'fades', 'dies'), [
+    (SLIDING, 0.9e-3, 6, 0), (SLIDING, 1.1e-3, 0, 0), (ROLLING, 0.9e-3, 0, 0),
+    (SLIDING, 0.9 * 2.0 ** -50, 6, 6), (SLIDING, 1.1 * 2.0 ** -50, 6, 0),
+    (ROLLING, 0.9 * 2.0 ** -50, 0, 0)])
+def test_steps_in_a_row_of_a_slip_that_fades_are_counted(mode, share, fades, dies, monkeypatch):
+    """Slower than a thousandth of 3 m/s at its end; where it dies, than 2^-50 of that."""
+    _, phase = driven(monkeypatch, short(mode, 1.0, SWIFT=3.0, FADED=5.0, CROWDED=5.0),
+                      pace=lambda time: 3.0 * share if time else 1.0)
+    phase.march(0.0)
+    assert phase.meta[[contact_march.FADED, contact_march.CROWDED]].tolist() == [fades, dies]
+
+
+@pytest.mark.parametrize(('mode', 'ratio', 'jams'), [
+    (SLIDING, 1100.0, 6), (SLIDING, 900.0, 0), (ROLLING, 1100.0, 0)])
+def test_steps_in_a_row_that_are_too_short_for_a_jam_are_counted(mode, ratio, jams, monkeypatch):
+    """Shorter than a thousandth of the time until A = 0: that is `ratio` times the step."""
+    _, phase = driven(
+        monkeypatch, short(mode, 1.0, JAMMED=5.0),
+        watched=lambda time: {contact_march.FIRMNESS: 5e-4 * (ratio if time else ratio + 1.0)
+                              / (ratio + 1.0)})
+    phase.march(0.0)
+    assert phase.meta[contact_march.JAMMED] == jams
+
+
+@pytest.mark.parametrize(('omega', 'fastest'), [((2.0, -3.0, 6.0), 7.0), ((2.0, -1.0, 2.0), 5.0)])
+def test_the_scale_of_the_rates_is_the_fastest_turn_so_far(omega, fastest, monkeypatch):
+    _, phase = driven(monkeypatch, short(ROLLING, 1.0, RATE=5.0), omega=omega)
+    phase.march(0.0)
+    assert phase.meta[contact_march.RATE] == near(fastest, rel=1e-15)
