@@ -23,7 +23,8 @@ from rigid_body_sim.scene.scene import load_scene, scene_names
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / 'docs'
 sys.path.insert(0, str(DOCS))
-import make_figures  # noqa: E402  (docs/ is no package)
+import make_accuracy  # noqa: E402  (docs/ is no package)
+import make_figures  # noqa: E402
 import make_reference  # noqa: E402
 from figures import page_tables, tables  # noqa: E402
 
@@ -129,6 +130,34 @@ def test_the_headline_shows_ours_and_the_best_peer_of_each_of_three_programs():
         'closed form, at any time and accuracy', 'taylor, stepped', 'heyoka', 'numba RK4',
         'MuJoCo RK4']
     assert '(docs/images/headline.png)' in README.read_text()
+
+
+@pytest.mark.parametrize(('arguments', 'data', 'pages'), [
+    ((), 'work_precision', ['problems', 'plane']),
+    (('--second',), 'work_precision_second', ['second_processor'])])
+def test_the_tables_of_accuracy_are_those_of_their_data(
+        arguments, data, pages, tmp_path, monkeypatch):
+    """What is measured again is joined to the data that is kept: alone it makes the same pages."""
+    others = {'problems', 'plane', 'second_processor'} - set(pages)
+    (tmp_path / 'accuracy').mkdir()
+    for page in pages:
+        said = (DOCS / 'accuracy' / f'{page}.md').read_text()
+        begin = said.index('<!-- ')
+        begin += said[begin:].index('\n') + 1
+        (tmp_path / 'accuracy' / f'{page}.md').write_text(
+            said[:begin] + 'an older table\n' + said[said.index('<!-- end -->', begin):])
+    drawn = []
+
+    class Drawn:
+        def savefig(self, path, **options):
+            drawn.append(path.stem)
+    monkeypatch.setattr(make_accuracy, 'DOCS', tmp_path)
+    monkeypatch.setattr(make_accuracy.figure, 'draw', lambda results: Drawn())
+    make_accuracy.main(*arguments, DOCS / f'{data}.json')
+    for name in (*(f'accuracy/{page}.md' for page in pages), f'{data}.json'):
+        assert (tmp_path / name).read_text() == (DOCS / name).read_text(), name
+    assert not any((tmp_path / 'accuracy' / f'{page}.md').exists() for page in others)
+    assert len(drawn) == (0 if arguments else 3)
 
 
 def test_figures_of_costs_draw_the_numbers_of_their_tables():
