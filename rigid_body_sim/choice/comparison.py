@@ -8,6 +8,7 @@ import numpy as np
 from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
+from rigid_body_sim.numerics.functions import hypot3_of_each
 from rigid_body_sim.numerics.rotations import angles_between, normalised
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
@@ -44,17 +45,11 @@ def apart_from_mean(states, finer):
     return apart(states, mean)
 
 
-def momenta_apart(scene, states, others):
-    """Return the differences of the angular momenta of two runs, shape (n,); infinite for NaN.
-
-    They are relative to the largest momentum so far.
-    """
-    found = []
-    for vectors in (states, others):
-        out = np.empty((len(vectors), DIAGNOSIS.size))
-        energies(scene).diagnose_many(parameters(scene), vectors, out)
-        found.append(out[:, DIAGNOSIS.part('momentum').places])
-    return _shares(*found)
+def momenta(scene, states):
+    """Return the angular momenta of a run, shape (n, 3), kg m^2/s."""
+    out = np.empty((len(states), DIAGNOSIS.size))
+    energies(scene).diagnose_many(parameters(scene), states, out)
+    return out[:, DIAGNOSIS.part('momentum').places]
 
 
 def velocities_apart(states, others):
@@ -62,23 +57,29 @@ def velocities_apart(states, others):
 
     They are relative to the largest speed so far.
     """
-    return _shares(states[:, VELOCITY], others[:, VELOCITY])
+    return shares(states[:, VELOCITY], others[:, VELOCITY])
 
 
 def rates_apart(states, others):
     """Return the differences of the angular velocities of two runs, shape (n,), as above."""
-    return _shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY])
+    return shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY])
 
 
-def _shares(one, other):
-    """Return the lengths of differences as shares of the largest length so far, shape (n,)."""
-    sizes, apart = np.maximum.accumulate(_lengths(one)), _lengths(one - other)
-    shares = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
-    return np.where(np.isnan(apart) | np.isnan(sizes), math.inf, shares)
+def shares(one, other):
+    """Return the lengths of differences as shares of the largest length so far, shape (n,).
+
+    Parameters
+    ----------
+    one, other : array (n, 3)
+        Vectors of two runs. Where one is not finite the share is infinite.
+    """
+    sizes, apart = np.maximum.accumulate(lengths(one)), lengths(one - other)
+    found = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
+    return np.where(np.isfinite(apart) & np.isfinite(sizes), found, math.inf)
 
 
-def _lengths(vectors):
-    """Return the lengths of vectors (n, 3), shape (n,); NaN where a component is not finite."""
-    sizes = np.abs(vectors).max(axis=1)
-    x, y, z = np.divide(vectors.T, sizes, out=np.zeros((3, len(vectors))), where=sizes != 0.0)
-    return sizes * np.sqrt(x * x + y * y + z * z)
+def lengths(vectors):
+    """Return the lengths of vectors (n, 3), shape (n,)."""
+    out = np.empty(len(vectors))
+    hypot3_of_each(np.ascontiguousarray(vectors), out)
+    return out

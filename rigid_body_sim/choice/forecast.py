@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigid_body_sim.choice.comparison import lengths
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.numerics.functions import hypot3, log, power
+from rigid_body_sim.numerics.functions import log, power
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
 POWERS = 1.0, 2.0        # of the angle that a body turns: those with which errors grow
@@ -91,9 +92,9 @@ def _spin_up(scene, states):
     """
     if drive(scene, None) == 0.0:
         return 0.0, 2.0
-    rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
+    rates = lengths(states[:, ANGULAR_VELOCITY])
     n = len(rates)
-    half, quarter, last = (max(rates[:many]) for many in (n // 2, 3 * n // 4, n))
+    half, quarter, last = (float(rates[:many].max()) for many in (n // 2, 3 * n // 4, n))
     if not 0.0 < half <= last < math.inf:
         return 0.0, 2.0
     return 4.0 * min(quarter - half, last - quarter) / last, 2.0 * last / half

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.choice.comparison import apart
+from rigid_body_sim.choice.comparison import apart, lengths
 from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.choice.runs import run
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
@@ -40,8 +40,7 @@ def of_angle_turned(scene, states, times):
     A rate that a torque adds counts twice, since the moment of inertia is rounded, too. On a hinge
     the attitude is the product of that of the start and of a turn, each of them rounded.
     """
-    rates = [hypot3(*omega) for omega in states[:, ANGULAR_VELOCITY].tolist()]
-    fastest = np.maximum.accumulate(rates)
+    fastest = np.maximum.accumulate(lengths(states[:, ANGULAR_VELOCITY]))
     if drive(scene, None) > 0.0:
         first = hypot3(*scene.initial.vector[ANGULAR_VELOCITY].tolist())
         fastest = fastest + np.maximum(0.0, fastest - first)

@@ -70,6 +70,7 @@ class Trial:
     def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._runs, self._patience = promised, {}, patience
+        self._momenta = {}
         self._beyond = {}    # what a run that took too much work said
         self._allowed = []    # (tolerance, error, since): what runs allowed themselves
         self._flies = _flies(scene)
@@ -274,6 +275,12 @@ class Trial:
                 raise
         return self._runs[tolerance]
 
+    def _momenta_of(self, tolerance):
+        """Return the angular momenta of a trial run."""
+        if tolerance not in self._momenta:
+            self._momenta[tolerance] = comparison.momenta(self._scene, self._states(tolerance))
+        return self._momenta[tolerance]
+
     def _run(self, tolerance, most):
         """Return the states of a run that takes at most so many steps."""
         found = []
@@ -360,7 +367,7 @@ class Trial:
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""
         here, best = self._states(tolerance), self._states(finer)
-        shares = comparison.momenta_apart(self._scene, here, best)
+        shares = comparison.shares(self._momenta_of(tolerance), self._momenta_of(finer))
         if self._flies:
             shares = np.maximum(shares, comparison.velocities_apart(here, best))
         return np.maximum(comparison.apart(here, best), MOMENTA * shares)

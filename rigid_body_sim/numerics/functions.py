@@ -544,3 +544,10 @@ def hypot3(x, y, z):
     if not a + b + c > 0.0:
         return a + b + c
     return _length(a, b, c)
+
+
+@compiled
+def hypot3_of_each(vectors, out):
+    """Fill out, shape (n,), with the lengths of n vectors, shape (n, 3)."""
+    for k in range(len(out)):
+        out[k] = hypot3(vectors[k, 0], vectors[k, 1], vectors[k, 2])

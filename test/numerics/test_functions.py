@@ -212,3 +212,11 @@ def plain(digests):
 def test_the_same_bits_as_plain_python(digests, plain, settings):
     compiled = digests(**settings)
     assert [name for name, digest in plain.items() if compiled[name] != digest] == []
+
+
+def test_lengths_of_vectors_are_those_of_each():
+    vectors, out = np.array([[3.0, 4.0, 12.0], [0.0, 0.0, 0.0], [2e200, 3e200, 6e200],
+                             [np.nan, 1.0, 0.0], [np.inf, 0.0, np.nan]]), np.empty(5)
+    functions.hypot3_of_each(vectors, out)
+    assert out[:3].tolist() == [13.0, 0.0, 7e200]
+    assert np.isnan(out[3]) and out[4] == np.inf
