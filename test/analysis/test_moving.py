@@ -37,7 +37,8 @@ def test_without_states_nothing_is_played():
 
 
 @pytest.mark.parametrize(('fastest', 'whole', 'which'), [
-    (1.6, [0.0, 0.5, 0.75], 'whole'), (1.61, [0.0, 0.5, 0.75], 'head'), (1.61, [0.0, 0.5], 'head')])
+    (1.6, [0.0, 0.5, 0.75], 'whole'), (1.61, [0.0, 0.5, 0.75], 'head'),
+    (1.61, [0.0, 0.5], 'head')])
 def test_the_beginning_is_played_where_the_whole_is_too_coarse(fastest, whole, which):
     """From one frame to the next the body turns by 0.8 rad at most: 1.6 rad/s for 0.5 s."""
     head = [0.0, 0.25, 0.5]
@@ -94,7 +95,7 @@ initial: {angular_velocity: [3.0, 0.0, 3.0]}
 @pytest.mark.parametrize(('constraint', 'moments'), [
     ('free', (0.05, 0.10, 0.13)),
     ('pivot', (0.80, 0.85, 0.13))])     # about the pivot, M 0.5^2 more across
-def test_the_arrow_of_L_is_about_the_centre_of_mass_or_the_point_held(constraint, moments):
+def test_the_arrow_of_momentum_is_about_the_centre_of_mass_or_the_point_held(constraint, moments):
     text = BOX.replace('CONSTRAINT', constraint)
     _, arrow = motion(parse_scene(text), [3.0, 0.0, 3.0]).data()['arrows']
     size = math.hypot(moments[0], moments[2])
