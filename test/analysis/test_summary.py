@@ -55,6 +55,8 @@ def test_drops_are_told_whoever_lost_them(missing, left_out, told):
      '2.5 to 3 J (not constant in this scene)'),
     (KEPT | {'largest_residual': 1e-3, 'last_residual': 1e-4},
      '2.5 J; drift +1.0e-04, largest residual 1.0e-03 (relative)'),
+    (KEPT | {'largest_residual': 2.0**-50},    # 4 ulp of 1
+     '2.5 J; drift -2.0e-16, largest residual 8.9e-16 (relative, round-off)'),
     (KEPT | {'stretches': 2, 'levels': [
         LEVEL | {'until': 1.0}, {'value': 4.0, 'from': 1.0, 'until': None, 'begun_by': 'a hit'}]},
      '2.5 J from 0 s on, 4 J from 1 s on (a hit); within each '
@@ -92,7 +94,8 @@ def test_phases_are_told_with_their_times(count, told):
     assert f'  phases   {told}' in report(phases=summary.phases(motion))
 
 
-@pytest.mark.parametrize(('parts', 'told'), [(1, ''), (3, 'within each of 3 stretches ')])
+@pytest.mark.parametrize(('parts', 'told'), [
+    (1, ''), (2, 'within each of 2 stretches '), (3, 'within each of 3 stretches ')])
 def test_the_angular_momentum_is_told_by_its_name(parts, told):
     momentum = {'of': 'L_z', 'stretches': parts, 'last_residual': 0.0, 'largest_residual': 1e-16}
     assert (f'  L_z      {told}drift +0.0e+00, largest residual 1.0e-16 (relative, round-off)'

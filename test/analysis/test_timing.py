@@ -105,3 +105,81 @@ def test_missing_ticks_are_counted_at_the_rate_of_their_time():
     assert measured(slow, slow, segments)[0]['missing'] == 0
     assert measured(
         np.delete(slow, [20, 3050]), np.delete(slow, [20, 3050]), segments)[0]['missing'] == 2
+
+
+def by_hand(shifts, rate=20.0, pace=1.0, changes=(), blocks=(1000,)):
+    """Return (summary, groups) of ticks whose publish times are stamp over pace plus `shifts`.
+
+    `changes`: tick -> pace from there on.
+    """
+    stamps = START + np.arange(len(shifts)) * round(1e9 / rate)
+    ends = [*sorted(changes), len(stamps)] if changes else [len(stamps)]
+    paces = [pace, *(changes[k] for k in sorted(changes))] if changes else [pace]
+    segments = [Segment(int(stamps[begin]), None, rate, one)
+                for begin, one in zip([0, *ends[:-1]], paces, strict=True)]
+    times, begin, at = np.empty(len(stamps), np.int64), 0, START
+    for end, one in zip(ends, paces, strict=True):
+        steps = (stamps[begin:end] - stamps[begin]) / (one or 1.0)
+        times[begin:end] = at + steps.astype(np.int64)
+        at, begin = int(times[end - 1] + 1e9 / rate / (one or 1.0)), end
+    summary, punctuality = measured(stamps, times + np.array(shifts, np.int64), segments, blocks)
+    return summary, punctuality.curve()
+
+
+def test_the_schedule_follows_by_its_slew_up_to_a_standstill():
+    """Groups of a second, 20 ticks: each as late as its first tick, but for the last.
+
+    The second is 10 ms late after 1.01 s, of which the schedule follows 5e-4; the third is 100 ms
+    later than the schedule, no standstill; the fourth by a nanosecond more, one.
+    """
+    first = 505_000
+    third = first + 100 * MS
+    second = first + int(5e-4 * (1000 * MS + third - 10 * MS))
+    fourth = second + 100 * MS + 1
+    shifts = np.repeat([0, 10 * MS, third, fourth, fourth], 20)
+    shifts[-2:] += 100 * MS, 100 * MS + 1    # the last is a pause
+    summary, groups = by_hand(shifts)
+    assert summary['standstills'] == 1 and summary['missing'] == 0 and summary['ticks'] == 100
+    assert groups[:, 2].tolist() == [0, 10 * MS - first, third - second, 0, 0]
+    assert groups[:, 4].tolist() == [0, 10 * MS - first, third - second, 0, 100 * MS]
+    # of 99 ticks 59 are in time, 20 each 9.5 ms and 99.5 ms late, one 100 ms
+    assert summary['lateness']['p50'] == pytest.approx(1e-6, abs=1e-12)
+    assert summary['lateness']['p99'] == pytest.approx(0.1, abs=1e-12)
+    assert summary['lateness']['max'] == pytest.approx(0.1, abs=1e-12)
+    running = 99 * 50 * MS + shifts[-1] - (100 * MS + 1)
+    assert summary['achieved_rate'] == near(99 * 50 * MS * 20.0 / running, rel=1e-14)
+
+
+@pytest.mark.parametrize(('rate', 'size'), [(5.0, 20), (20.0, 20), (25.0, 25)])
+def test_a_group_lasts_a_second_or_twenty_ticks(rate, size):
+    step = round(1e3 / rate)
+    _, groups = by_hand(np.zeros(2 * size + 3), rate)
+    # as numbers in double precision, stamps of today have 256 ns
+    assert np.rint((groups[:, :2] - START) / MS).astype(int).tolist() == [
+        [0, (size - 1) * step], [size * step, (2 * size - 1) * step],
+        [2 * size * step, (2 * size + 2) * step]]
+
+
+def test_groups_are_taken_as_soon_as_they_are_whole():
+    stamps = START + np.arange(20) * 50 * MS
+    punctuality = Punctuality(History((), (Segment(START, None, 20.0, 1.0),)))
+    punctuality.add(stamps[:19], stamps[:19])
+    assert len(punctuality.curve()) == 0
+    punctuality.add(stamps[19:], stamps[19:])
+    assert len(punctuality.curve()) == 1
+
+
+def test_another_pace_begins_another_group_and_schedule():
+    """The first 25 ticks at half the pace, then none, then at twice the pace: all in time."""
+    summary, groups = by_hand(np.zeros(70), pace=0.5, changes={25: 0.0, 45: 2.0})
+    assert np.rint((groups[:, :2] - START) / MS).astype(int).tolist() == [
+        [0, 950], [1000, 1200], [2250, 3200], [3250, 3450]]
+    assert not groups[:, 2:].any() and summary['missing'] == 0
+    # 24 steps in 2.4 s and as many in 0.6 s
+    assert summary['achieved_rate'] == near(48 / 3.0, rel=1e-14)
+
+
+def test_percentiles_of_a_group_lie_between_its_ticks():
+    """20 ticks, late by 0, 100, .. 1900 us: half of the way is 950 us, 99 % of it 1881 us."""
+    _, groups = by_hand(100_000 * np.arange(20))
+    assert groups[0, 2:] == pytest.approx([950e3, 1881e3, 1900e3], abs=1e-6)
