@@ -181,6 +181,18 @@ def test_states_do_not_depend_on_the_order_in_which_they_are_asked_for(mode):
         assert phase.at(times[place]).tobytes() == forth[place].tobytes()
 
 
+def test_the_end_of_the_last_step_is_within_it_however_often_it_is_asked_for():
+    phase = Phase()
+    phase.sizes = phase.sizes[:3]    # no size of a fourth step can be read
+    assert phase.march(9.0) == contact_march.RUNNING
+    end = phase.front[TIME]
+    first = phase.at(end)
+    assert known(first) == pytest.approx(true(end), abs=1e-11)
+    assert phase.at(end).tobytes() == first.tobytes()
+    phase.at(end - 1.01 * phase.sizes[2])    # in the step before
+    assert phase.at(end).tobytes() == first.tobytes()
+
+
 def test_a_slip_dies_within_its_time():
     phase = Phase(SLIDING)
     assert phase.march(2.0) == contact_march.STUCK
@@ -582,11 +594,11 @@ def test_a_ring_that_is_almost_flat_is_left_after_many_steps_in_a_row_that_are_s
 
 
 @pytest.mark.parametrize(('mode', 'before', 'after', 'stuck'), [
-    (SLIDING, 9.0, 0.9, True), (SLIDING, 9.0, 1.1, False), (SLIDING, 0.5, 0.9, False),
-    (ROLLING, 9.0, 0.9, False)])
+    (SLIDING, 9.0, 0.9, True), (SLIDING, 9.0, 1.0, True), (SLIDING, 9.0, 1.1, False),
+    (SLIDING, 0.5, 0.9, False), (SLIDING, 0.9, 0.9, False), (ROLLING, 9.0, 0.9, False)])
 def test_a_slip_that_falls_below_the_rounding_of_the_speeds_is_dead(mode, before, after, stuck,
                                                                     monkeypatch):
-    """Below 2^-56 of 3 m/s; one that grows, from less than that, is not."""
+    """At 2^-56 of 3 m/s or below; one that does not fall any more is not."""
     least = 3.0 * 2.0 ** -56
     _, phase = driven(monkeypatch, short(mode, 1.0, SWIFT=3.0),
                       pace=lambda time: least * (after if time else before))
@@ -594,11 +606,12 @@ def test_a_slip_that_falls_below_the_rounding_of_the_speeds_is_dead(mode, before
 
 
 @pytest.mark.parametrize(('mode', 'share', 'fades', 'dies'), [
-    (SLIDING, 0.9e-3, 6, 0), (SLIDING, 1.1e-3, 0, 0), (ROLLING, 0.9e-3, 0, 0),
-    (SLIDING, 0.9 * 2.0 ** -50, 6, 6), (SLIDING, 1.1 * 2.0 ** -50, 6, 0),
+    (SLIDING, 0.9e-3, 6, 0), (SLIDING, 1e-3, 6, 0), (SLIDING, 1.1e-3, 0, 0),
+    (ROLLING, 0.9e-3, 0, 0), (SLIDING, 0.9 * 2.0 ** -50, 6, 6), (SLIDING, 2.0 ** -50, 6, 6),
+    (SLIDING, 1.1 * 2.0 ** -50, 6, 0),
     (ROLLING, 0.9 * 2.0 ** -50, 0, 0)])
 def test_steps_in_a_row_of_a_slip_that_fades_are_counted(mode, share, fades, dies, monkeypatch):
-    """Slower than a thousandth of 3 m/s at its end; where it dies, than 2^-50 of that."""
+    """Not above a thousandth of 3 m/s at its end; where it dies, not above 2^-50 of that."""
     _, phase = driven(monkeypatch, short(mode, 1.0, SWIFT=3.0, FADED=5.0, CROWDED=5.0),
                       pace=lambda time: 3.0 * share if time else 1.0)
     phase.march(0.0)
