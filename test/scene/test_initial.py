@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ways to give the start: each means what it says, checked by SciPy's rotations and by hand."""
 
+import math
+
 import numpy as np
 import pytest
 from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.scene.initial import unit_quaternion
+from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.scene import parse_scene
 
 SKEW = '{mass: 2.0, inertia: [[0.05, 0.004, -0.002], [0.004, 0.06, 0.003], [-0.002, 0.003, 0.03]]}'
+EPS = np.finfo(float).eps
 ANGLES, VECTOR = [0.3, -1.1, 2.5], [0.4, -0.2, 3.0]
 
 
@@ -93,3 +98,67 @@ effects: []
 initial: {{}}
 """)
     assert scene.initial.time == 0.0
+
+
+ROD = '{mass: 1.0, shape: {rod: {length: 2.0}}}'
+A_TURN = 'orientation: [0, 0, 0.6, 0.8]'
+
+
+@pytest.mark.parametrize(('initial', 'vector'), [
+    ('', [0, 0, 0, 0, 1, *[0] * 9]),
+    ('spin: 4', [0, 0, 0, 0, 1, 0, 0, 4, *[0] * 6]),
+    ('angular_velocity: [1, 2, 3]', [0, 0, 0, 0, 1, 1, 2, 3, *[0] * 6]),
+    ('position: [1, 2, 3], velocity: [4, 5, 6]', [0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 3, 4, 5, 6]),
+    ('tilt: 1, spin: 2', [0, 0, math.sin(0.5), 0, math.cos(0.5), 0, 0, 2, *[0] * 6]),
+    (A_TURN, [0, 0, 0, 0.6, 0.8, *[0] * 9])])
+def test_what_is_given_is_kept_and_the_rest_is_zero(initial, vector):
+    assert start(initial).vector.tolist() == near(vector, rel=EPS)
+
+
+@pytest.mark.parametrize('scale', [1.0, 1e-150, 1e150, 1e-310, 1e307])
+def test_a_quaternion_of_any_norm_is_divided_by_it(scale):
+    """(2, 4, 5, 6) has the norm 9; squares of the large and the small are no doubles."""
+    found = unit_quaternion([2.0 * scale, 4.0 * scale, 5.0 * scale, 6.0 * scale], 'q')
+    rel = 1e-13 if scale == 1e-310 else 4e-16    # multiples of 5e-324: 1e-14; measured 2e-16
+    assert found == near((2 / 9, 4 / 9, 5 / 9, 6 / 9), rel=rel)
+
+
+@pytest.mark.parametrize('k', range(4))
+def test_a_quaternion_that_is_as_good_as_one_is_kept_to_the_last_bit(k):
+    """Its square is 1 to two ulps; dividing by the norm again would make 1 of it."""
+    for w in (1.0 + EPS, 1.0 - EPS, 1.0 - EPS / 2):
+        given = tuple(w if place == k else 0.0 for place in range(4))
+        assert unit_quaternion(given, 'q') == given
+    w = 1.0 + 2 * EPS
+    assert sum(unit_quaternion([w if place == k else 0.0 for place in range(4)], 'q')) == 1.0
+
+
+def test_a_quaternion_of_the_square_two_is_divided_too():
+    assert unit_quaternion([0, -1, 0, 1], 'q') == near((0, -(0.5 ** 0.5), 0, 0.5 ** 0.5), rel=EPS)
+    with pytest.raises(BadInput, match='of non-zero norm'):
+        unit_quaternion([0, 0, 0, 0], 'q')
+
+
+@pytest.mark.parametrize('across', [(1.0, 0.0), (0.0, 1.0)])
+@pytest.mark.parametrize(('key', 'refused'), [
+    ('angular_momentum', r'kg m\^2/s about principal axis 3, whose moment is zero'),
+    ('angular_velocity', 'rad/s about principal axis 3, whose moment is zero')])
+def test_along_a_rod_there_is_what_rounding_leaves_and_no_more(key, refused, across):
+    """As much as ULPS of the whole; with what is across 1, the whole is 1."""
+    found = start(f'{key}: [{across[0]}, {across[1]}, {float(ULPS)!r}]', ROD).angular_velocity
+    times = 3.0 if key == 'angular_momentum' else 1.0    # M length^2/12 = 1/3
+    assert found[:2] == near([times * one for one in across], rel=4 * EPS)
+    assert found[2] == (0.0 if key == 'angular_momentum' else ULPS)
+    with pytest.raises(BadInput, match=refused):
+        start(f'{key}: [{across[0]}, {across[1]}, {float(1.1 * ULPS)!r}]', ROD)
+
+
+def test_a_rod_askew_to_its_axes_may_turn_across_itself_only():
+    """It lies along (3, 4, 0): the tensor is |r|^2 - r r^T."""
+    askew = '{mass: 1, inertia: [[16, -12, 0], [-12, 9, 0], [0, 0, 25]]}'
+    assert start('angular_velocity: [4, -3, 2]', askew).angular_velocity.tolist() == [4, -3, 2]
+    assert start('angular_momentum: [100, -75, 50]', askew).angular_velocity == pytest.approx(
+        [4, -3, 2], abs=1e-14)
+    for key in ('angular_velocity', 'angular_momentum'):
+        with pytest.raises(BadInput, match='whose moment is zero'):
+            start(f'{key}: [3, 4, 0]', askew)

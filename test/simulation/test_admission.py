@@ -141,6 +141,19 @@ def test_the_work_of_a_command_is_a_double_that_leaves_room(rows, verdict, amoun
         assert given.after[11:14].tolist() == [2.0, 0.0, 0.0]
 
 
+@pytest.mark.parametrize('push', [2.0, -2.0])
+def test_at_most_so_much_work_and_turn_is_taken_and_no_more(push, monkeypatch):
+    """2 N s do J^2/(2 m) = 1 J; a torque of 3 f^2 N m about an axis of 3 kg m^2 turns by 1 rad."""
+    monkeypatch.setattr(admission, 'LARGEST_WORK', 1.0)
+    assert admitted(body(), impulse((push, 0, 0)))[1] == [TAKEN]
+    assert admitted(body(), impulse((push * (1.0 + 1e-15), 0, 0)))[1] == [TOO_MUCH_WORK]
+    monkeypatch.setattr(admission, 'LARGEST_WORK', 1e9)
+    monkeypatch.setattr(admission, 'LARGEST_TURN', 1.0)
+    most = 0.5 * push * 3.0 * RATE ** 2
+    assert admitted(body(), hold(torque=(0, most, 0)))[1] == [TAKEN]
+    assert admitted(body(), hold(torque=(0, most * (1.0 + 1e-15), 0)))[1] == [TOO_FAST]
+
+
 @pytest.mark.parametrize('axis', range(3))
 def test_an_axis_without_moment_takes_no_torque_of_any_command_alone(axis):
     moments, along, across = [1, 1, 1], [0, 0, 0], [0, 0, 0]

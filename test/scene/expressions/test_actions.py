@@ -43,3 +43,10 @@ def test_what_a_torque_depends_on_is_told(value, told, books):
 def test_a_force_acts_on_what_moves_and_its_moment_where_it_has_an_arm(effect, constraint, gives):
     """An expression of place is at the body's origin, which a pivot holds."""
     assert [one.gives for one in acting(effect, constraint)] == gives
+
+
+def test_a_moment_about_the_origin_itself_does_not_depend_on_the_force_there():
+    """A free body's is about the centre of mass, which is beside the origin."""
+    energy = "potential: {energy: 'x^2 + qx'}"
+    assert [one.in_field for one in acting(energy, 'pivot')] == [False]
+    assert [one.in_field for one in acting(energy)] == [True, True]
