@@ -145,6 +145,46 @@ def test_what_fails_in_a_body_of_many_names_it():
     assert found.value.time == 2.5
 
 
+def side_by_side(monkeypatch, failed, carried=False):
+    """Return what Stepped.many asks of bodies that are solved together, two at a time."""
+    asked = []
+    batch = types.SimpleNamespace(
+        run=lambda starts, out: asked.append(starts[:, 1].tolist()) or failed(starts))
+    of = types.SimpleNamespace(
+        _may_wind=False, _bound=None, _carried=carried, scene='scene',
+        method=types.SimpleNamespace(FAMILY=types.SimpleNamespace(
+            LANES=True, batch=lambda bound, of, times: batch)),
+        start=lambda vector: types.SimpleNamespace(
+            _within=lambda *ends: asked.append((vector[1], *ends))),
+        _check=lambda rows: asked.append(rows.shape))
+    monkeypatch.setattr(solver, 'lost', lambda method, scene, where: NotConverged('stuck', where))
+    monkeypatch.setattr(solver, 'on_all_cores', lambda work, count, least: [
+        work(slice(first, first + 2)) for first in range(0, count, 2)])
+    starts = np.zeros((4, 14))
+    starts[:, 1] = range(4)
+    starts[1, 0] = 1.5             # it begins after the first time
+    starts[3, 5:8] = np.array([1.0, 2.0, -2.0]) / 3.0 * 2.0 ** 51    # two seconds of it
+    return of, starts, asked
+
+
+@pytest.mark.parametrize(('carried', 'checked'), [(False, []), (True, [(3, 14)] * 2)])
+def test_of_many_bodies_those_are_looked_at_whose_times_may_be_out_of_reach(
+        carried, checked, monkeypatch):
+    of, starts, asked = side_by_side(monkeypatch, lambda starts: (), carried)
+    Stepped.many(of, starts, np.array([3.0, 1.0, 2.0]), np.zeros((4, 3, 14)))
+    assert asked == [(1.0, 1.0, 3.0), (3.0, 1.0, 3.0), [0.0, 1.0], *checked, [2.0, 3.0], *checked]
+    of, starts, asked = side_by_side(monkeypatch, lambda starts: ())
+    Stepped.many(of, starts, np.array([1.5, 2.0]), np.zeros((4, 2, 14)))
+    assert asked == [[0.0, 1.0], [2.0, 3.0]]
+
+
+def test_a_body_that_fails_beside_others_is_named_by_its_place_among_all(monkeypatch):
+    of, starts, _ = side_by_side(monkeypatch, lambda starts: (1, 2.5) if starts[0, 1] else ())
+    with pytest.raises(NotConverged, match=r'^body 3: stuck$') as found:
+        Stepped.many(of, starts, np.array([2.0]), np.zeros((4, 1, 14)))
+    assert found.value.time == 2.5
+
+
 BOTH = 'accuracy', 'step'
 
 

@@ -86,6 +86,14 @@ def test_a_time_before_the_start_at_which_drag_makes_it_infinite_is_refused():
     assert np.isfinite(out).all()
     with pytest.raises(BadInput, match='before the start'):
         one.states(np.array([0.0, -1e6]), out)
+    starts, together = np.array([scene.initial.vector] * 2), np.empty((2, 2, 14))
+    starts[1, 0] = 1e6    # it begins later
+    one.states(np.array([-0.1, 0.0]), out)
+    one.many(starts[:1], np.array([-0.1, 0.0]), together[:1])
+    assert (together[0] == out).all()
+    for bodies, times in ((2, [0.0, 1.0]), (1, [1.0, -1e6])):
+        with pytest.raises(BadInput, match=f'at {min(times)!r} s, before the start'):
+            one.many(starts[:bodies], np.array(times), together[:bodies])
 
 
 def test_entries_are_those_of_the_motion_or_else_integrated_where_anything_acts(monkeypatch):
