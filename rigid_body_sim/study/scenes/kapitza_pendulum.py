@@ -16,7 +16,8 @@ SLIGHTLY = 0.002
 def numbers(run):
     """Return A (m), w (rad/s), g (m/s^2) and the reduced length l (m)."""
     body, parameters = run.scene.body, run.scene.mapping['parameters']
-    moment, arm = body.about_origin.moments[0], body.center_of_mass[2]
+    # it tilts about the body's y axis
+    moment, arm = body.about_origin.moments[1], body.center_of_mass[2]
     return (parameters['A'], parameters['w'], run.scene.effect('gravity').g,
             moment / (body.mass * arm))
 

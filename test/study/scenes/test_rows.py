@@ -17,7 +17,13 @@ from scipy.spatial.transform import Rotation
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import States
-from rigid_body_sim.study.scenes import convex_body, experiment, heavy_top, sleeping_top
+from rigid_body_sim.study.scenes import (
+    convex_body,
+    experiment,
+    heavy_top,
+    kapitza_pendulum,
+    sleeping_top,
+)
 from rigid_body_sim.study.scenes.systems import SYSTEMS
 
 PACE = {'chandler_wobble': 6e-7, 'kater_pendulum': 6.0, 'kater_pendulum_from_p': 6.0,
@@ -208,3 +214,11 @@ def _kept(row):
     if row.absolute and np.ndim(row.measured) == 0 and abs(row.measured) < 1e-3:
         found['measured'] = 0.0
     return found
+
+
+def test_the_reduced_length_of_a_pendulum_is_about_the_axis_of_its_tilt():
+    """It tilts about y, where a box of 0.3 x 0.1 x 0.2 m has M (0.3^2 + 0.2^2)/12 + M 0.5^2."""
+    scene = load_scene('kapitza_pendulum', [
+        'body.shape={box: {size: [0.3, 0.1, 0.2]}}', 'body.center_of_mass=[0, 0, 0.5]'])
+    assert kapitza_pendulum.numbers(types.SimpleNamespace(scene=scene)) == (
+        0.01, 300.0, 9.81, near((0.13 / 12.0 + 0.25) / 0.5, rel=1e-14))
