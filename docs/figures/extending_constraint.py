@@ -23,12 +23,12 @@ def draw():
         states.position, states.orientation, strict=True)]).T
     figure, both = panels(2, 4.0)
     around = np.linspace(0.0, 2.0 * np.pi, 200)
-    for axes, (across, name), up in zip(both, ((x, 'x (m)'), (x, 'x (m)')), (y, z), strict=True):
+    for axes, up, name in zip(both, (y, z), ('y (m)', 'z (m)'), strict=True):
         axes.plot(size * np.cos(around), size * np.sin(around), **THEORY)
-        axes.plot(across, up, color=BLUE, linewidth=0.8)
+        axes.plot(x, up, color=BLUE, linewidth=0.8)
         axes.plot(0.0, 0.0, color=BLACK, marker='o', linestyle='')
         axes.set_aspect('equal')
-        label(axes, name, 'y (m)' if up is y else 'z (m)', legend=False)
+        label(axes, 'x (m)', name, legend=False)
     both[0].set_title('from above', fontsize=10)
     both[1].set_title('from the side', fontsize=10)
     return figure

@@ -226,6 +226,16 @@ def test_momenta_count_a_tenth_and_velocities_of_a_body_that_flies_too(tried):
     assert apart(4, 8) == near([1e-6] * runs.LOOKS, rel=1e-5)
 
 
+def test_the_momenta_of_a_run_are_formed_once(tried, monkeypatch):
+    formed, momenta = [], comparison.momenta
+    monkeypatch.setattr(comparison, 'momenta', lambda scene, states: (
+        formed.append(len(states)), momenta(scene, states))[1])
+    tried._scene, tried._runs = coasting_scene(), {HERE: at(1e-9), HERE / 2.0: at(0.0)}
+    for _ in range(2):
+        tried._apart(HERE, HERE / 2.0)
+    assert formed == [runs.LOOKS] * 2
+
+
 def test_the_finer_run_is_the_finest_that_work_allows(tried, monkeypatch):
     able, asked = [], []
 

@@ -120,6 +120,15 @@ def test_drag_is_stiff_beyond_twenty_times_the_rates_of_the_motion(share, stiff,
                                          'constraint: free\neffects: []\ninitial: {}\n'), 7) == []
 
 
+@pytest.mark.parametrize(('k', 'stiff'), [(3.3, False), (3.4, True)])
+def test_a_matrix_is_as_fast_as_its_largest_eigenvalue(k, stiff):
+    """Of nine equal entries it is three times one of them; 20 times 0.5 rad/s is the limit."""
+    scene = parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 1, 1]}\nconstraint: free\n'
+                        f'effects: [drag: {{linear: 0, angular: {[[k] * 3] * 3}}}]\n'
+                        'initial: {angular_velocity: [0.3, 0, 0.4]}\n')
+    assert bool(stiff_relaxations(scene, 7)) is stiff
+
+
 @pytest.mark.parametrize('square', [2.0e5, 1.0e6])
 def test_a_wheel_in_tar_turns_by_the_angle_of_its_closed_form(square):
     r"""I omega' = -(k + q omega) omega, so phi = (I/q) ln(1 + (q omega_0/k)(1 - exp(-k t/I)))."""
