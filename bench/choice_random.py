@@ -2,7 +2,7 @@
 """What `auto` promises on random scenes: error, expected error and ledger beside a truth.
 
     .venv/bin/python bench/choice_random.py [--seed 11] [--count 300] [--first 0] [--keep FILE]
-                                            [--new]
+                                            [--new | --slowing]
 
 Scenes are drawn from the whole scene language (random_scenes/draw.py): bodies from slim to nearly
 symmetric, all constraints, gravity along any direction, several torques, drag of numbers and
@@ -10,7 +10,8 @@ matrices, internal dissipation, rotors, friction of a ball and of a hinge, strik
 potentials, springs, torsion springs, magnets, gravity gradients, expressions of time and state,
 with kinks too, all ways to say the start. Convex bodies on a plane are in plane_random.py. With
 --new each has only effects in the scene's own words (random_scenes/new_language.py), on pivots off
-the origin and on a path too.
+the origin and on a path too; with --slowing drag or dry friction brings each to rest
+(random_scenes/slowing.py).
 
 The truth shares no formula with the package: Newton's and Euler's equations in body axes with the
 full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates the expressions.
@@ -38,7 +39,7 @@ import tempfile
 import time
 
 import numpy as np
-from random_scenes import new_language
+from random_scenes import new_language, slowing
 from random_scenes.draw import drawn
 from random_scenes.wide import WIDE
 
@@ -55,6 +56,8 @@ def main():
     parser.add_argument('--keep', type=pathlib.Path, help='lines of JSON: what is in it stands')
     parser.add_argument('--new', action='store_true',
                         help="scenes of effects in the scene's own words only")
+    parser.add_argument('--slowing', action='store_true',
+                        help='scenes of bodies that come to rest only')
     parser.add_argument('--only', choices=KINDS, help='the scenes that one process runs')
     options = parser.parse_args()
     if np.finfo(WIDE).nmant < 63:
@@ -80,7 +83,7 @@ def _both(options, keep):
         each.append(subprocess.Popen(
             [sys.executable, __file__, '--only', kind, '--keep', str(keep), '--seed',
              str(options.seed), '--count', str(options.count), '--first', str(options.first),
-             *['--new'] * options.new], env=settings))
+             *['--new'] * options.new, *['--slowing'] * options.slowing], env=settings))
     for process in each:
         process.wait()
 
@@ -89,7 +92,8 @@ def _run(options):
     """Run the scenes of one kind that are not kept yet, and keep them."""
     from random_scenes.judge import judged
     results = _kept(options.keep, options.seed)
-    draw = new_language.drawn if options.new else drawn
+    draw = (slowing.drawn if options.slowing else
+            new_language.drawn if options.new else drawn)
     for number in range(options.first, options.first + options.count):
         if number in results or _kind(draw(number, options.seed)[0]) != options.only:
             continue

@@ -12,7 +12,7 @@ from random_scenes.wide import WIDE, cross, rotated
 class BallTruth:
     """A ball that slides, then rolls: v and omega are linear in time, q by extrapolation."""
 
-    jumped = 0.0    # as Truth has it
+    jumped = turned = 0.0    # as Truth has them
 
     def __init__(self, scene, settings, *_):
         one, self.radius = dict(settings)['sliding_friction'], WIDE(scene.body.radius)
@@ -39,14 +39,25 @@ class BallTruth:
             n = max(1, math.ceil((end - self.t) * float(np.abs(self.w0).max()) / 0.5))
             begin = WIDE(self.t)
             for step in range(n):
+                before = self.rate
                 self._step(begin + (WIDE(end) - begin) * step / n, (WIDE(end) - begin) / n)
+                self.t = float(begin) + (end - float(begin)) * (step + 1) / n
+                self.turned += 0.5 * (before + self.rate) * (end - float(begin)) / n
             self.t = end
+
+    def _omega(self, t):
+        return self.w0 + np.minimum(t, self.until)[:, None] * self.growth
+
+    @property
+    def rate(self):
+        """The angular speed, rad/s."""
+        return float(np.sqrt((self._omega(self.t)[0] ** 2).sum()))
 
     def _step(self, t, h):
         rows = []
 
         def rates(q, t):
-            w = self.w0 + np.minimum(t, self.until)[:, None] * self.growth
+            w = self._omega(t)
             out = np.empty_like(q)
             out[:, :3] = (q[:, 3:] * w + cross(w, q[:, :3])) / 2
             out[:, 3] = -(w * q[:, :3]).sum(1) / 2

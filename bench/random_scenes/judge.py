@@ -43,15 +43,16 @@ def _motion(read):
 
 def known(scene, duration):
     """Return LOOKS times, attitudes there, the largest floor (rad), and Truth.jumped (J)."""
-    truth, turned = truth_of(scene), 0.0
+    truth = truth_of(scene)
+    first, fastest = truth.rate, 0.0
     times, attitudes, floors = duration * np.arange(1, LOOKS + 1) / LOOKS, [], []
     for end in times:
         truth.to(float(end))
-        y = truth.y
-        attitudes.append(y[0, :4].astype(WIDE))
-        rate = float(np.sqrt((y[0, 4:7] ** 2).sum())) if y.shape[1] > 4 else 0.0
-        turned = max(turned, rate)
-        floors.append(max(truth.floor(), HALF_ULP * (4.0 + turned * float(end))))
+        attitudes.append(truth.y[0, :4].astype(WIDE))
+        fastest = max(fastest, truth.rate)
+        # a rate that the body has gained counts from the start on
+        turned = truth.turned if truth.rate < first else fastest * float(end)
+        floors.append(max(truth.floor(), HALF_ULP * (4.0 + turned)))
     return times, attitudes, max(floors), float(truth.jumped)
 
 

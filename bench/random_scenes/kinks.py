@@ -37,6 +37,16 @@ class Kinked:
         return self._copies[0].jumped
 
     @property
+    def turned(self):
+        """See Truth."""
+        return self._copies[0].turned
+
+    @property
+    def rate(self):
+        """See Truth."""
+        return self._copies[0].rate
+
+    @property
     def y(self):
         """The unknowns of all copies."""
         return np.concatenate([one.y for one in self._copies])
@@ -76,9 +86,7 @@ class _Copy(Truth):
             if changed:
                 h, which = min((self._crossing(y, k, h, n), n) for n in changed)
                 after, _ = self._extrapolated(y, k, h)
-            after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
-            self.y = after
-            self.t = WIDE(end) if h == end - self.t else self.t + h
+            self._go(after, h, end)
             if changed:
                 before = self._wound()
                 for passed in {which, *self._changed(after, 0)}:    # a kink may be met twice

@@ -24,10 +24,10 @@ class Truth:
 
     Unknowns: q (4), omega (3, body), velocity and place of the centre of mass (3 and 3, world).
     `jumped` (J) is the energy that torsion springs got without work, from one end of the angle of
-    a hinge to the other.
+    a hinge to the other; `turned` (rad) is the angle turned so far.
     """
 
-    jumped = WIDE(0)
+    jumped, turned = WIDE(0), 0.0
 
     def __init__(self, scene, settings, parameters, motion=None):
         body, kind = scene.body, scene.constraint.kind
@@ -64,6 +64,8 @@ class Truth:
             n = _wide(scene.constraint.axis)
             self.axis = n / np.sqrt(n @ n)
             self.about = times(tensors, self.axis[None]) @ self.axis
+            # rounded components across the axis would go on for ever
+            self.y[:, 4:7] = (self.y[:, 4:7] @ self.axis)[:, None] * self.axis
         # the velocity of the centre of mass
         q, w = self.y[:, :4], self.y[:, 4:7]
         center = _wide(body.center_of_mass)
@@ -132,9 +134,19 @@ class Truth:
                 if error < TOLERANCE or h < 1e-9:
                     break
                 h, since = h * 0.5, 0
-            after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
-            self.y = after
-            self.t = WIDE(end) if h == end - self.t else self.t + h
+            self._go(after, h, end)
+
+    def _go(self, after, h, end):
+        """Stand at the unknowns after a step h, which may be the last one up to an end (s)."""
+        after[:, :4] /= np.sqrt((after[:, :4] ** 2).sum(1))[:, None]
+        before, self.y = self.rate, after
+        self.turned += float(h) * 0.5 * (before + self.rate)
+        self.t = WIDE(end) if h == end - self.t else self.t + h
+
+    @property
+    def rate(self):
+        """The angular speed, rad/s."""
+        return float(np.sqrt((self.y[0, 4:7] ** 2).sum()))
 
     def _extrapolated(self, y, k, h):
         """Return y after h, and an estimate of its relative error.

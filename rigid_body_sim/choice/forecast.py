@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rigid_body_sim.choice.comparison import lengths
+from rigid_body_sim.choice.measured import makes_heat
+from rigid_body_sim.choice.rounding import angles_turned
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.numerics.functions import log, power
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
@@ -59,9 +61,10 @@ def missed(accuracy, horizon, expected, met_until):
 def later(scene, states, errors, longer):
     """Return the error (rad) at a time beyond a run, from its errors at looks.
 
-    It grows in proportion to time. Where a drive makes a body turn ever faster, errors go with the
-    angle that it turns, or with a power of it up to the square: then those of the momentum, which
-    add up, turn the body. What the errors did in the second half of the run tells the power.
+    It grows in proportion to time, as the number of steps does. Where a drive makes a body turn
+    ever faster, errors go with the angle that it turns, or with a power of it up to the square:
+    then those of the momentum, which add up, turn the body. What the errors did in the second half
+    of the run tells the power.
 
     Parameters
     ----------
@@ -82,6 +85,36 @@ def later(scene, states, errors, longer):
     grew = log(last / first) / log(so_far) if first > 0.0 else POWERS[1]
     angle = longer * (1.0 + faster * (longer - 1.0))
     return last * power(angle, min(max(grew, POWERS[0]), POWERS[1]))
+
+
+def turned_later(scene, states, longer):
+    """Return the angle that a body has turned by a later time over that at the end of a run.
+
+    It grows in proportion to time, unless heat slows the body: then it goes on at the largest rate
+    of the last quarter of the run, and where that is less than the one of the quarter before, each
+    quarter of this length to come has the same share of the last.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run, at looks.
+    longer : float
+        The later time over that of the run, at least 1.
+    """
+    if longer == 1.0 or not makes_heat(scene):
+        return longer
+    rates = lengths(states[:, ANGULAR_VELOCITY])
+    n = len(rates)
+    before, last = float(rates[n // 2:3 * n // 4].max()), float(rates[3 * n // 4:].max())
+    if not 0.0 < last < math.inf:
+        return 1.0 if last == 0.0 else longer
+    turned = np.empty(n)
+    angles_turned(np.arange(1.0, n + 1.0), rates, math.inf, turned)
+    yet = longer - 1.0
+    if last < before:
+        yet = min(yet, 0.25 * last / (before - last))
+    # the first rate counts up to the first look, too
+    return min(longer, 1.0 + yet * n * last / float(turned[-1] + rates[0]))
 
 
 def _spin_up(scene, states):

@@ -40,13 +40,23 @@ def kind(scene):
 
     Heat at a constant angular momentum (`turning`) is internal dissipation; other heat is damping.
     """
-    frame = scene.frame
-    acting = [one for effect in scene.effects if effect.acting is not None
-              for one in effect.acting(frame, 0.0)]
-    hot = [one for one in acting if one.books == 'heat']
+    hot = _hot(scene)
     if any(one.gives == 'turning' for one in hot):
         return f'{_free_directions(scene)}, dissipating'
     return f'{_free_directions(scene)}, damped' if hot else _free_directions(scene)
+
+
+@kept
+def makes_heat(scene):
+    """Return whether anything makes heat, which may bring a body to rest."""
+    return bool(_hot(scene))
+
+
+def _hot(scene):
+    """Return what makes heat, a list of Acting."""
+    frame = scene.frame
+    return [one for effect in scene.effects if effect.acting is not None
+            for one in effect.acting(frame, 0.0) if one.books == 'heat']
 
 
 def _free_directions(scene):

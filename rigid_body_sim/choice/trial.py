@@ -29,7 +29,7 @@ from rigid_body_sim.numerics.functions import log, power
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
-LONGER = 10.0   # times that: up to there a trial goes on to a strike
+LONGER = 10.0   # times that: up to there a trial goes on to a strike, or until heat slows a body
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
@@ -69,22 +69,42 @@ class Trial:
 
     def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
-        self._promised, self._runs, self._patience = promised, {}, patience
-        self._momenta = {}
-        self._beyond = {}    # what a run that took too much work said
-        self._allowed = []    # (tolerance, error, since): what runs allowed themselves
+        self._promised, self._patience, self._others = promised, patience, others
         self._flies = _flies(scene)
-        pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
-        time = min(horizon, _span(scene, pace, push, horizon))
-        self._longer, self._times = horizon / time, runs.looks(time)
-        self._radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
-        most = patience * (1 if others else ALONE) * (STEPS + int(
-            min(STEPS_PER_RADIAN * self._radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
         rows = measured.rows(scene)
         known = [entry['tolerance'] for entry in rows.get(method) or rows['dop8']]
         self._finest = max(min(known), METHODS[method].FAMILY.FINEST)
         self._coarsest = max(known)
-        self.prototype, self._most = Stepped(scene, method, self._coarsest, horizon=horizon), most
+        self.prototype = Stepped(scene, method, self._coarsest, horizon=horizon)
+        pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
+        time = min(horizon, _span(scene, pace, push, horizon))
+        radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
+        self._begin(time, radians)
+        if time < horizon and measured.makes_heat(scene):
+            self._go_on(time, radians)
+
+    def _begin(self, time, radians):
+        """Let runs end at a time (s) in which the body turns by an angle, about."""
+        self._longer, self._times = self._horizon / time, runs.looks(time)
+        self._radians = radians
+        self._most = self._patience * (1 if self._others else ALONE) * (STEPS + int(
+            min(STEPS_PER_RADIAN * radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
+        self._runs, self._momenta = {}, {}
+        self._beyond = {}     # what a run that took too much work said
+        self._allowed = []    # (tolerance, error, since): what runs allowed themselves
+
+    def _go_on(self, time, radians):
+        """Let runs end at the horizon if heat makes the body turn little from a time (s) on."""
+        with contextlib.suppress(TooMuchWork):
+            slowing = self._states(self._coarsest)
+            more = forecast.turned_later(self._scene, slowing, self._longer)
+            if more > LONGER:
+                return
+            self._begin(self._horizon, more * radians)
+            try:
+                self._states(self._coarsest)
+            except TooMuchWork:    # what it does at rest takes many steps
+                self._begin(time, radians)
 
     def take(self, tolerance):
         """Return the tolerance to take where the table has the one given.
@@ -204,12 +224,12 @@ class Trial:
                 self._promised, horizon if self._promised <= accuracy else 0.0)
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
         if float(errors.max()) < MAGNIFIED:
-            best = self._states(finest)
-            lost = rounding.lost(
-                self._scene, self.prototype.at(finest, self._most), times, best)
+            best, prototype = self._states(finest), self.prototype.at(finest, self._most)
+            lost = rounding.lost(self._scene, prototype, times, best)
             # what moving the start does grows with time, whatever drives the body
-            last = max(float(lost.max()) * self._longer,
-                       self._later(best, rounding.of_angle_turned(self._scene, best, times)))
+            turned = rounding.of_angle_turned(self._scene, prototype, best, times)
+            last = max(float(lost.max()) * forecast.turned_later(self._scene, best, self._longer),
+                       self._later(best, turned))
             if float(errors.max()) <= comparison.ROUNDINGS * float(lost.max()):
                 around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
@@ -255,7 +275,8 @@ class Trial:
         It is 0 for a tolerance that is not below what rounding does.
         """
         states = self._states(tolerance)
-        lost = self._later(states, rounding.of_angle_turned(self._scene, states, self._times))
+        lost = self._later(states, rounding.of_angle_turned(
+            self._scene, self.prototype.at(tolerance, self._most), states, self._times))
         return ROUNDED * lost if tolerance <= lost else 0.0
 
     def _grid(self, tolerance):

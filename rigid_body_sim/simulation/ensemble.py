@@ -10,7 +10,7 @@ import numpy as np
 from tqdm import tqdm
 
 from rigid_body_sim.choice.choose import HORIZON, Choice, choose
-from rigid_body_sim.choice.rounding import of_starts
+from rigid_body_sim.choice.rounding import of_bodies
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
@@ -96,7 +96,8 @@ class Ensemble(Sequence):
         more may err by more than the accuracy, and shows it here. Bodies run again with a finer
         tolerance, which takes a little longer than the ensemble did, and those that differ by
         less than that one with the finest; the error of a closed form is half an ulp of the angle
-        turned, without a run. The starts and the states must still be what they were.
+        turned, which takes a run only of bodies that heat may bring to rest. The starts and the
+        states must still be what they were.
 
         Raises
         ------
@@ -113,7 +114,8 @@ class Ensemble(Sequence):
         starts, times = self._asked
         errors = np.zeros(len(self))
         for choice, bodies in self.choices:
-            errors[bodies] = of_starts(choice.scene, starts[bodies], times.max(initial=0.0))
+            errors[bodies] = of_bodies(choice.scene, choice.many, starts[bodies],
+                                       times.max(initial=0.0))
             if choice.is_nearly:
                 errors[bodies] += choice.expected_error
             finer = choice.finer()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigid_body_sim.choice.rounding import of_starts
+from rigid_body_sim.choice.rounding import of_bodies
 from rigid_body_sim.mechanics.bounds import swing_momentum
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.mechanics.parameters import parameters
@@ -196,7 +196,7 @@ def _expected(choice, scene, starts, alone):
         return math.nan
     if choice.method != 'exact' or not alone:
         return choice.expected_error
-    return of_starts(scene, starts, choice.horizon)
+    return of_bodies(scene, choice.many, starts, choice.horizon)
 
 
 def _residuals(scene, choice, starts, ends, time):

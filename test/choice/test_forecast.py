@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from choice.known_bodies import SLOW, coasting_scene
+from near import near
 
 from rigid_body_sim.choice import comparison, forecast, runs
 from rigid_body_sim.choice.choose import choose
@@ -83,6 +84,32 @@ def test_errors_of_a_body_sped_up_from_rest(errors, longer, expected):
     states[:, 7] = times
     found = forecast.later(coasting_scene(effects=[DRIVE]), states, errors(times), longer)
     assert found == pytest.approx(expected)
+
+
+SLOWER = 'drag: {linear: 0, angular: 1.0}'
+
+
+@pytest.mark.parametrize(('rates', 'effects', 'expected'), [
+    # from rest to rest; at one rate; nothing that makes heat
+    (lambda t: 0.0 * t, [SLOWER], 1.0), (lambda t: 2.0 + 0.0 * t, [SLOWER], 100.0),
+    (lambda t: np.exp2(-40.0 * t), [], 100.0),
+    # exp(-4 t) has turned by 0.25 (1 - exp(-4)), and turns by 0.25 exp(-4) more
+    (lambda t: np.exp(-4.0 * t), [SLOWER], 1.0 / -math.expm1(-4.0)),
+    # half of the angle is still to come
+    (lambda t: np.exp(-math.log(2.0) * t), [SLOWER], 2.0),
+    # one that slows down to a rate goes on at it: 0.5 of 2.75 in each run to come
+    (lambda t: np.where(t < 0.5, 5.0, 0.5), [SLOWER], 1.0 + 99.0 * 0.5 / 2.75),
+    # one that is as fast in the last quarter as before is not taken to slow down
+    (lambda t: np.where((t > 0.6) & (t < 0.8), 3.0, 1.0), [SLOWER], 100.0),
+    (lambda t: np.where(t < 0.99, 3.0, math.nan), [SLOWER], 100.0)])
+def test_the_rounding_of_a_body_that_heat_slows_goes_with_the_angle_it_turns(rates, effects,
+                                                                            expected):
+    times = runs.looks(1.0)
+    states = np.zeros((runs.LOOKS, 14))
+    states[:, 7] = rates(times)
+    scene = coasting_scene(effects=effects)
+    assert forecast.turned_later(scene, states, 100.0) == near(expected, rel=0.05)
+    assert forecast.turned_later(scene, states, 1.0) == 1.0
 
 
 @pytest.mark.parametrize(('inertia', 'torque', 'rate', 'accuracy', 'horizon'), [

@@ -13,9 +13,11 @@ from soak import IN_SOAK, SOAK
 BENCH = pathlib.Path(__file__).resolve().parents[2] / 'bench'
 SCENES = {2: 'a ball on a table', 205: 'drag by matrices'}
 IN_WORDS = {2: 'dissipation at a pivot'}
+SLOWING = {56: 'dry friction of a hinge'}
 if SOAK:    # three to ten seconds of plain Python each
     SCENES |= {166: 'dry friction of a hinge', 172: 'gravity along a vector'}
     IN_WORDS |= {0: 'a moving pivot', 186: 'a swing whose velocity nearly vanishes'}
+    SLOWING |= {37: 'drag of a hinge, to rest', 6: 'dry friction of a hinge that rests for long'}
 
 
 @pytest.fixture
@@ -41,6 +43,15 @@ def test_the_error_is_met_foretold_and_balanced(judge, number):
 def test_so_it_is_for_effects_in_the_words_of_a_scene(judge, number):
     from random_scenes import new_language
     for line, *good in judge.judged(number, 21, new_language.drawn):
+        assert all(good), line
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('number', SLOWING, ids=SLOWING.values())
+def test_so_it_is_for_bodies_that_come_to_rest(judge, number):
+    """The rounding foretold is that of the angle turned, not of the largest rate times time."""
+    from random_scenes import slowing
+    for line, *good in judge.judged(number, 1, slowing.drawn):
         assert all(good), line
 
 

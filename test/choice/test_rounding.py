@@ -9,23 +9,95 @@ from choice.known_bodies import Coasting, coasting_scene
 from near import near
 
 from rigid_body_sim.choice import rounding, runs
+from rigid_body_sim.motions import fixed_axis
+from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.scene.scene import parse_scene
 
 TIMES = np.array([1.0, 2.0, 3.0, 4.0])
 HALF_ULP = 2.0 ** -53
 
 
-def test_rounding_is_half_an_ulp_of_the_angle_at_the_largest_rate_so_far():
+def mean(rate, other):
+    """Return the bound of the mean of a rate that decays from one value to another."""
+    return (2.0 * math.sqrt(rate * other) + 0.5 * (rate + other)) / 3.0
+
+
+def test_rounding_is_half_an_ulp_of_the_angle_at_the_largest_rate_from_then_on():
+    """Until t a body counts as turning as fast as it does or will by t."""
     states = np.zeros((4, 14))
     states[:, 7] = 3.0, 6.0, 1.0, 2.0
-    found = rounding.of_angle_turned(coasting_scene(), states, TIMES)
-    assert found == pytest.approx(
-        HALF_ULP * (4.0 + np.array([3.0, 12.0, 18.0, 24.0])), abs=0.0)
+    found = rounding.of_angle_turned(coasting_scene(), None, states, TIMES)
+    turned = np.array([3.0, 12.0, 12.0 + mean(6.0, 1.0), 12.0 + mean(6.0, 2.0) + 2.0])
+    assert found == near(HALF_ULP * (4.0 + turned), rel=1e-15)
     # what a torque added counts twice
     driven = coasting_scene(effects=('torque: {value: [0, 0, 1]}',))
-    found = rounding.of_angle_turned(driven, states, TIMES)
-    assert found == pytest.approx(
-        HALF_ULP * (4.0 + np.array([3.0, 18.0, 27.0, 36.0])), abs=0.0)
+    found = rounding.of_angle_turned(driven, None, states, TIMES)
+    more = [0.0, 6.0, 6.0, 6.0 + mean(6.0, 2.0) - 3.0]
+    assert found == near(HALF_ULP * (4.0 + turned + more), rel=1e-15)
+
+
+def test_the_mean_of_a_rate_that_decays_is_bounded_closely():
+    """Its own mean is (r - r')/ln(r/r'): 1.00008 of it are told at a half, 1.0084 at a tenth."""
+    for share, most in ((0.5, 1.0001), (0.1, 1.009), (1e-2, 1.1)):
+        turned = np.empty(2)
+        rounding.angles_turned(np.array([0.0, 2.0]), np.array([3.0, 3.0 * share]), math.inf,
+                               turned)
+        exact = 2.0 * 3.0 * (1.0 - share) / -math.log(share)
+        assert turned[0] == 0.0
+        assert 1.0 <= turned[1] / exact < most
+    # of one that ends in between a sixth of the first rate counts
+    rounding.angles_turned(np.array([0.0, 2.0]), np.array([3.0, 0.0]), math.inf, turned)
+    assert turned[1] == near(1.0, rel=1e-15)
+
+
+def test_a_run_that_is_not_a_number_has_no_angle():
+    turned = np.empty(3)
+    for rates in ([1.0, math.nan, 1.0], [1.0, 1.0, math.nan], [math.nan, 1.0, 1.0]):
+        rounding.angles_turned(np.arange(3.0), np.array(rates), math.inf, turned)
+        assert math.isnan(turned[2])
+
+
+SLOWED = """
+scene: slowed
+body: {mass: 1, inertia: [1, 2, 2.5]}
+constraint: {hinge: {axis: [0, 0, 1]}}
+effects: [drag: {linear: 0, angular: 5.0}]
+initial: {rate: RATE}
+"""
+
+
+@pytest.mark.parametrize('horizon', [0.3, 10.0, 1e3, 1e6])
+@pytest.mark.parametrize('rate', [0.1, 40.0, 5e3])
+def test_a_body_that_drag_stops_rounds_what_it_turns_until_then(rate, horizon):
+    """The rate is w exp(-2 t), the angle w/2 (1 - exp(-2 t)), however long the body rests."""
+    one = parse_scene(SLOWED.replace('RATE', repr(rate)))
+    times = runs.looks(horizon)
+    prototype = Exact(one, fixed_axis)
+    states = runs.run(one, prototype, one.initial.vector, times)
+    found = rounding.of_angle_turned(one, prototype, states, times) / HALF_ULP - 8.0
+    turned = 0.5 * rate * -np.expm1(-2.0 * times)
+    # up to the first radian an eighth of a radian more may count; 1.001 to 1.08 here
+    assert (found > (1.0 - 1e-12) * turned - 1e-14).all()
+    assert (found < 1.1 * turned + 0.2).all()
+
+
+def test_bodies_that_drag_stops_round_what_each_turns_from_its_own_time():
+    one = parse_scene(SLOWED.replace('RATE', '1'))
+    starts = np.zeros((5, 14))
+    starts[:, 4], starts[:, 0] = 1.0, [0.0, 0.0, 90.0, 0.0, 90.0]
+    starts[:, 7] = rates = np.array([40.0, 1e3, 40.0, 1.0, 1e3])
+    prototype = Exact(one, fixed_axis)
+    found = rounding.of_bodies(one, prototype.many, starts, 100.0) / HALF_ULP - 8.0
+    assert found == near(0.5 * rates, rel=0.1)
+    # a run that ends before it is slow: no more than its first rate times time
+    found = rounding.of_bodies(one, prototype.many, starts[:2], 1e-3) / HALF_ULP - 8.0
+    assert found == near(1e-3 * rates[:2], rel=1e-2)
+
+
+def test_bodies_that_nothing_slows_do_not_run_for_their_rounding():
+    one, starts = coasting_scene(), np.ones((2, 14))
+    found = rounding.of_bodies(one, None, starts, 8.0)
+    assert found.tolist() == rounding.of_starts(one, starts, 8.0).tolist()
 
 
 @pytest.mark.parametrize(('effects', 'added'), [
@@ -63,7 +135,7 @@ def test_conditioning_is_what_half_an_ulp_of_the_start_does():
     assert found == pytest.approx(expected, rel=0.3, abs=0.0)
     lost = rounding.lost(one, prototype, TIMES, states)
     assert lost == pytest.approx(
-        np.maximum(found, rounding.of_angle_turned(one, states, TIMES)), abs=0.0)
+        np.maximum(found, rounding.of_angle_turned(one, None, states, TIMES)), abs=0.0)
     struck = coasting_scene((1.5, 1e-12), (3.0, 1e-12))
     twice = rounding.lost(struck, prototype, TIMES, states) / lost
     # what each strike rounds grows from then on
@@ -150,7 +222,7 @@ def test_signs_are_such_that_mixed_terms_cancel():
 def test_conditioning_is_not_looked_for_where_the_angle_turned_is_enough(share, asked,
                                                                         monkeypatch):
     one, states, seen = moved_runs(monkeypatch, lambda w: 1e-20 * w + np.zeros(4))
-    turned = rounding.of_angle_turned(one, states, TIMES)
+    turned = rounding.of_angle_turned(one, None, states, TIMES)
     found = rounding.lost(one, None, TIMES, states, share * float(turned.max()))
     assert found == near(turned, rel=1e-15)
     assert bool(seen) == asked

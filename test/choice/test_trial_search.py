@@ -120,12 +120,12 @@ def test_a_tenth_to_a_half_of_the_accuracy_is_spent(power, factor, tried, monkey
 
 
 def test_an_error_that_may_be_rounding_ends_the_search(tried, monkeypatch):
-    """Ten times the rounding of the angle turned: here of four numbers of a body at rest."""
-    tried._scene = coasting_scene()
-    monkeypatch.setattr(tried, '_states', lambda _: at(0.0, rate=0.0))
-    rounded = 10.0 * 4.0 * 2.0 ** -53
-    assert tried._rounding(2.0 ** -51) == near(rounded, rel=1e-15)
-    assert tried._rounding(2.0 ** -50) == 0.0
+    """Ten times the rounding of the angle turned: here of four numbers, and of 3 rad/s in 4 s."""
+    tried._scene, tried._times = coasting_scene(), runs.looks(4.0)
+    monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
+    rounded = 10.0 * 16.0 * 2.0 ** -53
+    assert tried._rounding(2.0 ** -49) == near(rounded, rel=1e-15)
+    assert tried._rounding(2.0 ** -48) == 0.0
     tried._accuracy, asked = 1e-18, []
     monkeypatch.setattr(tried, '_rounding', lambda _: rounded)
     monkeypatch.setattr(tried, '_error', lambda one: asked.append(one) or rounded)

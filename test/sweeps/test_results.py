@@ -199,10 +199,12 @@ def test_tolerance_and_expected_error_are_those_of_the_choice(integrator, tolera
 
 @pytest.mark.parametrize(('settled', 'method', 'alone', 'expected'), [
     (None, 'exact', True, math.nan), ('auto', 'taylor', True, 3.0), ('auto', 'exact', False, 3.0),
-    ('auto', 'exact', True, 'of each start'), ('auto', 'taylor', False, 3.0)])
+    ('auto', 'exact', True, "of each ('scene', 'many', 'start', 1)"),
+    ('auto', 'taylor', False, 3.0)])
 def test_an_error_is_expected_of_each_start_where_starts_alone_differ(
         monkeypatch, settled, method, alone, expected):
-    monkeypatch.setattr(results, 'of_starts', lambda scene, starts, horizon: 'of each start')
-    choice = types.SimpleNamespace(settled=settled, method=method, expected_error=3.0, horizon=1)
-    found = results._expected(choice, None, None, alone)
+    monkeypatch.setattr(results, 'of_bodies', lambda *given: f'of each {given}')
+    choice = types.SimpleNamespace(settled=settled, method=method, expected_error=3.0, horizon=1,
+                                   many='many')
+    found = results._expected(choice, 'scene', 'start', alone)
     assert found == expected or (math.isnan(found) and math.isnan(expected))

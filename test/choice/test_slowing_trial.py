@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trials of a body that drag slows: they go on to the horizon where it turns little more."""
+
+import pytest
+from near import near
+
+from rigid_body_sim.choice import comparison, trial
+from rigid_body_sim.choice.trial import Trial
+from rigid_body_sim.integrators.marching.work import TooMuchWork
+from rigid_body_sim.scene.scene import parse_scene
+from rigid_body_sim.simulation.simulation import Simulation
+
+SLOWING = """
+scene: slowing
+body: {mass: 1, inertia: [1.0, 1.5, 2.0]}
+constraint: free
+effects: [drag: {linear: 0, angular: DRAG}]
+initial: {angular_velocity: [2, 10, 5]}
+"""
+TRIED = 30.0       # rad, of a trial
+RATE = 129.0 ** 0.5
+HORIZON = 40.0     # s: fifteen trials
+
+
+def slowing(monkeypatch, drag, radians=TRIED):
+    monkeypatch.setattr(trial, 'RADIANS', radians)
+    scene = parse_scene(SLOWING.replace('DRAG', repr(drag)))
+    return Trial(scene, 1e-9, HORIZON, 'dop8', 1e-12, 1, True)
+
+
+@pytest.mark.parametrize(('drag', 'turned'), [
+    # in all it turns by some RATE 1.6/drag: 15, 60 and 180 rad
+    (1.2, 15.0), (0.3, 60.0), (0.1, 180.0)])
+def test_a_body_that_drag_slows_is_tried_to_the_horizon(drag, turned, monkeypatch):
+    one = slowing(monkeypatch, drag)
+    assert (one._longer, one._times[-1]) == (1.0, HORIZON)
+    # what the trial takes it to turn, from its first part
+    assert one._radians == near(max(turned, TRIED), rel=0.3)
+    assert abs(one._most - 5000 - 20.0 * one._radians) <= 1.0
+
+
+@pytest.mark.parametrize('drag', [0.0, 0.01])
+def test_one_that_goes_on_turning_is_tried_for_a_while(drag, monkeypatch):
+    """Drag of 0.01 leaves it 14 of 15 trials: more than ten are not made."""
+    one = slowing(monkeypatch, drag)
+    assert one._times[-1] == near(TRIED / RATE, rel=1e-12)
+    assert one._longer == near(HORIZON * RATE / TRIED, rel=1e-12)
+    assert abs(one._most - 5600) <= 1
+
+
+@pytest.mark.parametrize('able', [0, 1])
+def test_one_whose_rest_takes_too_much_work_is_tried_for_a_while(able, monkeypatch):
+    """Nor is one whose first part takes too much."""
+    made = []
+
+    def run(self, tolerance, most):
+        made.append(most)
+        if len(made) > able:
+            raise TooMuchWork('most')
+        return kept(self, tolerance, most)
+    kept = Trial._run
+    monkeypatch.setattr(Trial, '_run', run)
+    one = slowing(monkeypatch, 0.3)
+    assert len(made) == 1 + able
+    assert one._longer == near(HORIZON * RATE / TRIED, rel=1e-12)
+    assert abs(one._most - 5600) <= 1
+
+
+@pytest.mark.parametrize('inertia', ['[1.0, 1.5, 2.0]', '[1.0, 1.0, 1.9]'])
+@pytest.mark.parametrize('horizon', [40.0, 400.0])
+@pytest.mark.parametrize('accuracy', [1e-6, 1e-11])
+def test_the_error_of_a_fast_body_that_rests_for_long_is_met_and_foretold(
+        accuracy, horizon, inertia, monkeypatch):
+    """From the first 3 s alone 3e-12 rad were told of an error of 5e-11, and 4e-7 of 7e-8."""
+    monkeypatch.setattr(trial, 'RADIANS', TRIED)
+    scene = parse_scene(SLOWING.replace('DRAG', '0.6').replace('[1.0, 1.5, 2.0]', inertia))
+    ours = Simulation(scene, accuracy=accuracy, horizon=horizon)
+    best = Simulation(scene, 'gauss16', accuracy=1e-14, horizon=horizon)
+    times = [horizon / 45.0 ** 2 * k * k for k in range(1, 46)]
+    error = comparison.apart(ours.states(times).vector, best.states(times).vector).max()
+    assert error <= accuracy                                     # 0.07 to 0.3 of it
+    assert error / 3.0 <= ours.expected_error <= 3.0 * error     # 0.6 to 2.5 times
