@@ -79,7 +79,7 @@ class Rerun:
         asked = {**asked, **self._method}
         # the method that auto chose then, not the one it would choose now
         settled = None
-        if not self._method and asked['expected_error'] is not None:
+        if not self._method and asked['integrator'] in ('auto', 'exact'):
             settled = Settled(asked['method'], asked['tolerance'], asked['expected_error'],
                               asked.get('met_until', asked['horizon']))
         simulation = Simulation(

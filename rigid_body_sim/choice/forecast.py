@@ -9,7 +9,7 @@ import numpy as np
 from rigid_body_sim.choice.comparison import lengths
 from rigid_body_sim.choice.measured import makes_heat
 from rigid_body_sim.choice.rounding import angles_turned
-from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.mechanics.bounds import drive, unbounded
 from rigid_body_sim.numerics.functions import log, power
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
@@ -123,7 +123,7 @@ def _spin_up(scene, states):
     First the share of its last rate that a run adds, after the lesser growth of its last two
     quarters; then the factor by which rate times time, an angle, grew in its second half.
     """
-    if drive(scene, None) == 0.0:
+    if drive(scene, None) == 0.0 and not unbounded(scene):
         return 0.0, 2.0
     rates = lengths(states[:, ANGULAR_VELOCITY])
     n = len(rates)

@@ -33,6 +33,8 @@ LONGER = 10.0   # times that: up to there a trial goes on to a strike, or until 
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
+FEW = 4    # looks of a part of a run that tell how it goes on
+SEEN = 1.25    # times the time of the last change: so far a trial goes at least
 LEAST, MOST, AIM = 0.1, 0.5, 0.22     # shares of the accuracy: errors that are taken; the aim
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
 SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
@@ -77,7 +79,8 @@ class Trial:
         self._coarsest = max(known)
         self.prototype = Stepped(scene, method, self._coarsest, horizon=horizon)
         pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
-        time = min(horizon, _span(scene, pace, push, horizon))
+        self._changes = _changes(scene, horizon)
+        time = min(horizon, _span(self._changes, pace, push, _onset(scene)))
         radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
         self._begin(time, radians)
         if time < horizon and measured.makes_heat(scene):
@@ -114,6 +117,8 @@ class Trial:
         TooMuchWork
             A run takes more steps than the motion asks for.
         """
+        if self._sees_no_end:
+            return self._grid(self.tolerance_from(tolerance) / COARSER)
         if (self._radians <= SHORT and self._promised <= self._accuracy
                 and not (self._flies or _slim(self._scene))):
             return self._grid(tolerance / COARSER)
@@ -207,12 +212,20 @@ class Trial:
         return self._later(here, comparison.apart(here, other._states(its)))
 
     @property
+    def _sees_no_end(self):
+        """Whether something changes behind the trial: nobody knows what errors do from then on."""
+        seen = np.count_nonzero(self._times > self._changes[-1])
+        return self._longer > 1.0 and bool(seen < FEW)
+
+    @property
     def is_cut_short(self):
         """Whether any of its runs took too much work: more patience may tell more."""
         return bool(self._beyond)
 
     def forecast(self, tolerance):
-        """Return the Forecast of a choice."""
+        """Return the Forecast of a choice: of nothing where the trial sees no end."""
+        if self._sees_no_end:
+            return forecast.Forecast(None, None)
         accuracy, horizon, times = self._accuracy, self._horizon, self._times
         finer = self._reference(tolerance)
         below = None if finer is None else self._below(finer, tolerance)
@@ -394,8 +407,16 @@ class Trial:
         return np.maximum(comparison.apart(here, best), MOMENTA * shares)
 
     def _later(self, states, errors):
-        """Return the error (rad) at the horizon after those of a run."""
-        return forecast.later(self._scene, states, errors, self._longer)
+        """Return the error (rad) at the horizon after those of a run.
+
+        Its part since the last change tells it, too: what acts then goes on.
+        """
+        last, since = forecast.later(self._scene, states, errors, self._longer), self._changes[-1]
+        part = self._times > since
+        if since == 0.0 or self._longer == 1.0 or self._sees_no_end:
+            return last    # no more is known
+        longer = (self._horizon - since) / (float(self._times[-1]) - since)
+        return max(last, forecast.later(self._scene, states[part], errors[part], longer))
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""
@@ -423,13 +444,37 @@ def _flies(scene):
         for one in effect.acting(frame, 0.0))
 
 
-def _span(scene, rate, acceleration, horizon):
+def _changes(scene, horizon):
+    """Return the times (s) before the horizon at which strikes are or torques jump; at least 0."""
+    times = [strike.time for strike in scene.strikes]
+    times += [time for effect in scene.acting for time in effect.breakpoints]
+    return [0.0, *sorted(time for time in times if 0.0 < time < horizon)]
+
+
+def _onset(scene):
+    """Return the time (s) from which on something drives the body."""
+    return min((effect.breakpoints[0] if effect.breakpoints else 0.0
+                for effect in scene.acting
+                if effect.bounds and effect.bounds(scene.body, scene.constraint).torque > 0.0),
+               default=0.0)
+
+
+def _span(changes, rate, acceleration, onset=0.0):
     """Return the length of a trial, s: until the body could have turned by RADIANS.
 
-    It goes on to a strike that comes later, within the horizon, and then for that angle again.
+    It goes on to the last of the changes (s), and then for that angle again, and to SEEN times
+    that, unless it takes LONGER times the angle. The body accelerates from the onset (s) on.
     """
-    times = [strike.time for strike in scene.strikes if strike.time < horizon]
-    own = RADIANS / rate if rate else math.inf
-    if acceleration:
-        own = 2.0 * RADIANS / (rate + math.sqrt(rate * rate + 2.0 * acceleration * RADIANS))
-    return min(own + (times[-1] if times else 0.0), LONGER * own)
+    most = LONGER * RADIANS
+    if rate * onset < most:
+        most = onset + _time(most - rate * onset, rate, acceleration)
+    else:
+        most /= rate
+    last = changes[-1]
+    return min(max(last + _time(RADIANS, rate, acceleration), SEEN * last), most)
+
+
+def _time(angle, rate, acceleration):
+    """Return the time (s) in which a body that accelerates turns by an angle (rad)."""
+    fast = rate + math.sqrt(rate * rate + 2.0 * acceleration * angle)
+    return 2.0 * angle / fast if fast else math.inf

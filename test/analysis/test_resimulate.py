@@ -18,6 +18,7 @@ from rigid_body_sim.analysis.source import sources
 from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.recording import about, metadata
 from rigid_body_sim.recording.reader import Recording
+from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation import arithmetic
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -50,6 +51,18 @@ def outcome(capsys, *arguments):
 def test_commands_resets_and_gaps_are_reproduced_to_the_bit(commanded, capsys):
     assert main([str(commanded)]) == 0
     assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
+
+
+@pytest.mark.parametrize('known', [None, 3e-9])
+def test_the_method_that_auto_chose_is_taken_again_whatever_was_known_of_its_error(known):
+    """Nobody knew where a strike comes later than trials go; `auto` would choose anew."""
+    scene = load_scene('asymmetric_top')
+    asked = about.run_of(Simulation(scene, 'auto', accuracy=1e-6)) | {
+        'method': 'dop8', 'tolerance': 3e-8, 'expected_error': known, 'met_until': known}
+    entries = [{'kind': 'begin', 'scene': scene.text, 'simulation': json.dumps(asked)},
+               {'kind': 'state', 'tick': 0, 'stamp': 0, 'log_time': 0}]
+    choice = Rerun(entries, {}).simulation.choice
+    assert (choice.method, choice.tolerance, choice.expected_error) == ('dop8', 3e-8, known)
 
 
 def test_a_stamp_that_lies_years_away_is_a_jump_without_a_search_for_events(tmp_path):

@@ -48,6 +48,7 @@ def test_beyond_the_last_time_an_error_grows_evenly_to_that_at_the_horizon():
 
 
 DRIVE = 'torque: {value: [0, 0, 1], frame: body}'
+UNBOUNDED = 'torque: {value: [0, 0, "2*wz"], frame: body}'
 
 
 @pytest.mark.parametrize(('rates', 'powers', 'effects', 'expected'), [
@@ -57,6 +58,8 @@ DRIVE = 'torque: {value: [0, 0, 1], frame: body}'
     (lambda t: 3.0 * t, 3.0, [DRIVE], 27.0),
     (lambda t: np.where(t < 0.7, t, math.inf), 2.0, [DRIVE], 3.0),
     (lambda t: t, 0.5, [DRIVE], 9.0), (lambda t: t, 2.0, [], 3.0),
+    # a torque whose bound nobody knows drives, too
+    (lambda t: t, 2.0, [UNBOUNDED], 9.0),
     # from a rate of 1 to 2 the rate is 4 at three times the time, the angle 6 times as large
     (lambda t: 1 + t, 1.0, [DRIVE], 6.0),
     # a rate that rises no more, or rose late, is not taken to rise
