@@ -71,6 +71,7 @@ def tried(number, seed, draw=drawn):
                     for best, own in zip(attitudes, states.orientation, strict=True))
         residual = _unbalanced(simulation, jumped)
         expected, size = choice.expected_error, max(error, floor)
+        expected = np.inf if expected is None else expected    # nothing is known
         verdicts = [
             error <= max(accuracy, 3.0 * floor),
             size / 3.0 <= expected <= 3.0 * size or expected > SENSELESS,

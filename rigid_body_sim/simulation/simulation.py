@@ -352,9 +352,10 @@ class Simulation:
     def expected_error(self) -> float | None:
         """Largest error of the attitude that is expected within the horizon, rad.
 
-        None where nothing is known: of fixed steps, and after a command, since no trial has seen
-        what it does to the motion. `choice.expected_error` is that of the scene. Trial runs tell
-        it when it is first asked for: of a method that was named, too.
+        None where nothing is known: of fixed steps, where a strike or a jump of a torque comes
+        later than trial runs go, and after a command, since no trial has seen what it does to the
+        motion. `choice.expected_error` is that of the scene. Trial runs tell it when it is first
+        asked for: of a method that was named, too.
         """
         if self.departed is not None:
             return None
