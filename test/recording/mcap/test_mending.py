@@ -183,7 +183,7 @@ def test_a_message_index_with_a_wrong_length_does_not_swallow_a_chunk(form, into
         assert mended(flipped)[0] == messages(content), begin
 
 
-@pytest.mark.parametrize('opcode', [0x7F, Opcode.CHANNEL, Opcode.ATTACHMENT])
+@pytest.mark.parametrize('opcode', [0x7F, Opcode.CHANNEL, Opcode.ATTACHMENT, Opcode.MESSAGE])
 def test_a_message_index_with_a_wrong_opcode_is_one_by_its_lengths_and_costs_nothing(opcode):
     content = small('zstd')
     for begin in [begin for kind, begin, _ in records(content) if kind == Opcode.MESSAGE_INDEX]:
