@@ -116,7 +116,7 @@ def test_a_point_that_whirls_is_held_at_the_axis_and_a_slow_one_where_it_is():
 
 
 def test_a_hand_holds_beside_the_axis_through_the_middle_of_the_body():
-    """At the turn FOLLOWS between snapshots it is halfway to the axis."""
+    """At the turn FOLLOWS between snapshots it is halfway to the axis, at thrice it at a tenth."""
     scene = parse_scene('scene: s\nbody: {mass: 2.0, inertia: [1.0, 1.0, 1.0], center_of_mass: '
                         '[1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\ninitial: {}\n')
     hand, vector = Hand(Mechanics(scene)), scene.initial.vector.copy()
@@ -125,9 +125,10 @@ def test_a_hand_holds_beside_the_axis_through_the_middle_of_the_body():
     for spin in (0.0, 1e-200):    # whose square is zero
         vector[5:8] = 0.0, 0.0, spin
         assert hand.held_point(vector, grip, lag) == pytest.approx(at + grip, abs=1e-12)
-    vector[5:8] = 0.0, 0.0, FOLLOWS / lag
-    halfway = at + center + [0.25, 0.0, 4.0]
-    assert hand.held_point(vector, grip, lag) == pytest.approx(halfway, abs=1e-12)
+    for times, arm in ((1.0, 0.25), (3.0, 0.05)):
+        vector[5:8] = 0.0, 0.0, times * FOLLOWS / lag
+        held = at + center + [arm, 0.0, 4.0]
+        assert hand.held_point(vector, grip, lag) == pytest.approx(held, abs=1e-12)
 
 
 def test_a_pull_does_not_brake_the_spin_of_a_fast_top():
