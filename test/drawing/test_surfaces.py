@@ -52,6 +52,14 @@ def test_a_drawn_solid_has_the_moments_of_its_shape(name):
     np.testing.assert_allclose(inertia, expected, atol=0.02 * expected.max())
 
 
+def test_the_faces_of_a_box_towards_its_axes_have_the_second_colour():
+    box = surfaces.box((1.0, 2.0, 3.0))
+    a, b, c = np.moveaxis(box.vertices[box.faces], 1, 0)
+    towards = np.cross(b - a, c - a).sum(axis=1) > 0.0    # one component is not 0
+    assert box.accent.tolist() == towards.tolist()
+    assert not box.smooth
+
+
 @pytest.mark.parametrize('name', [*SOLIDS, *THIN])
 def test_every_surface_is_closed_and_has_two_colours(name):
     surface = surfaces.SURFACES[name](**(SOLIDS | THIN)[name])

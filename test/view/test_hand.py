@@ -14,7 +14,7 @@ from rigid_body_sim.drawing.body import drawing_of
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.scene.scene import parse_scene, scene_names
 from rigid_body_sim.simulation.command_rows import AXES, BODY, FORCE, TORQUE, WORLD
-from rigid_body_sim.view.hand import PULL, Hand, pace_of, together
+from rigid_body_sim.view.hand import FOLLOWS, PULL, Hand, pace_of, together
 from rigid_body_sim.view.mouse import hit
 from rigid_body_sim.view.snapshots import Mechanics
 
@@ -115,6 +115,22 @@ def test_a_point_that_whirls_is_held_at_the_axis_and_a_slow_one_where_it_is():
     assert hand.held_point(vector, grip, 1.0 / 60.0) == pytest.approx(grip, abs=1e-9)
 
 
+def test_a_hand_holds_beside_the_axis_through_the_middle_of_the_body():
+    """At the turn FOLLOWS between snapshots it is halfway to the axis, at thrice it at a tenth."""
+    scene = parse_scene('scene: s\nbody: {mass: 2.0, inertia: [1.0, 1.0, 1.0], center_of_mass: '
+                        '[1.0, 2.0, 3.0]}\nconstraint: free\neffects: []\ninitial: {}\n')
+    hand, vector = Hand(Mechanics(scene)), scene.initial.vector.copy()
+    grip, lag, center = np.array([1.5, 2.0, 7.0]), 0.1, np.array([1.0, 2.0, 3.0])
+    at = vector[8:11]
+    for spin in (0.0, 1e-200):    # whose square is zero
+        vector[5:8] = 0.0, 0.0, spin
+        assert hand.held_point(vector, grip, lag) == pytest.approx(at + grip, abs=1e-12)
+    for times, arm in ((1.0, 0.25), (3.0, 0.05)):
+        vector[5:8] = 0.0, 0.0, times * FOLLOWS / lag
+        held = at + center + [arm, 0.0, 4.0]
+        assert hand.held_point(vector, grip, lag) == pytest.approx(held, abs=1e-12)
+
+
 def test_a_pull_does_not_brake_the_spin_of_a_fast_top():
     simulation = Simulation('heavy_top', rate=600.0)
     hand = Hand(Mechanics(simulation.scene))
@@ -138,6 +154,12 @@ def test_a_body_that_must_roll_is_not_lifted_off_its_plane_and_one_that_may_slip
             [row] = hand.pull(vector, point, cursor, PULL)
             assert np.hypot(*row[FORCE][:2]) > 0.0
             assert (row[FORCE][2] > 0.0) == up
+    # towards its plane a body at rest is pulled straight to the cursor
+    hand, vector = hand_of('rolling_disk', 'initial.angular_velocity=[0, 0, 0]')
+    point = vector[8:11] + np.array([0.01, 0.0, 0.01])
+    [row] = hand.pull(vector, point, point + below, PULL)
+    assert np.cross(row[FORCE], below) == pytest.approx(
+        0.0, abs=1e-12 * np.linalg.norm(row[FORCE]) * np.linalg.norm(below))
 
 
 def test_two_pulls_at_once_are_the_sum_of_their_wrenches():

@@ -84,6 +84,17 @@ def test_a_body_that_flies_freely_feels_no_force_though_its_origin_is_carried_ro
     assert not found.force.any() and not found.torque.any()
 
 
+def test_force_and_torque_that_a_source_tells_stand_in_for_those_of_the_state():
+    scene = load_scene('tennis_racket')
+    vector, told = scene.initial.vector, (np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0]))
+    snapshot = Snapshot(0.0, vector, vector[np.newaxis], Wrench(), 0.0, 0.0, 0.0, net=told)
+    mechanics = Mechanics(scene)
+    found, own = mechanics.of(snapshot), mechanics.arrows(vector, Wrench())
+    assert found.force is told[0] and found.torque is told[1]
+    assert (found.momentum == own.momentum).all() and (found[0] == own[0]).all()
+    assert (mechanics.of(snapshot._replace(net=None)).torque == own.torque).all()
+
+
 BRAKED = ('scene: s\nbody: {mass: 3.0, inertia: [1.0, 1.5, 2.0]}\nconstraint: free\n'
           "effects: [force: {value: ['-0.1*vx', 0, 0]}]\ninitial: {}\n")
 

@@ -63,7 +63,7 @@ class DamagedRecords(Findings):
         if following >= source.size:
             self._cut_at(offset, opcode)
             return None
-        if opcode == MESSAGE and self._with_length(offset, following):
+        if opcode == MESSAGE and not is_index and self._with_length(offset, following):
             return following
         self.damages.append(self._lost(following - offset, is_index, rescued))
         self._indexes_follow = is_index

@@ -137,7 +137,7 @@ def _best(source, offset, hint, cut):
         if found is None or not (found[2] or votes >= 2):
             continue
         data, records, sure, end = found
-        if best is None or (sure, len(records)) > (best[2], len(best[1])):
+        if best is None or (sure, len(records)) > (best[3], len(best[2])):
             best = name, data, records, sure, end
             if sure:
                 break
@@ -221,9 +221,9 @@ def _plain(source, begin, _name, lengths, claims, cut):
         if checksum and _right(records, checksum):
             return records, records, True, begin + length
         if follows(source, begin + length, None, 1):
-            found.append((records[0] in (MESSAGE, *DESCRIPTIONS), -length, records))
+            found.append(records)
     if found:
-        records = max(found)[2]
+        records = min(found, key=len)
         return None, records, False, begin + len(records)
     if cut and source.size - begin <= LARGEST_CHUNK:
         return None, source.read(begin, source.size - begin), False, source.size

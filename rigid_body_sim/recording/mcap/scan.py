@@ -96,7 +96,7 @@ class Scan(DamagedRecords):
         if told and offset == told.data_end:
             self.end, self.cut = offset, False
             return None
-        head = self._bytes.read(offset, HEAD.size + 6)
+        head = self._bytes.read(offset, HEAD.size)
         if len(head) < HEAD.size:
             self._cut_at(offset, 0)
             return None
@@ -186,12 +186,12 @@ class Scan(DamagedRecords):
 
     def _message(self, offset, end):
         """Take a message outside of the chunks."""
-        record = self._bytes.read(offset, end - offset)
+        record = self._bytes.read(offset, HEADS.itemsize)
         if self._indexes_follow and is_message_index(record, end - offset - HEAD.size):
             return self._damaged(offset)        # an index with a wrong opcode
         if not follows(self._bytes, end, None, 1) and not self._damage_begins(offset, end):
             return self._damaged(offset)
-        head = heads(record[:HEADS.itemsize], np.zeros(1, int))[0]
+        head = heads(record, np.zeros(1, int))[0]
         if int(head['channel']) not in self._known_channels():
             return self._damaged(offset)
         self._settle()

@@ -20,6 +20,7 @@ from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
+from near import near
 from soak import SOAK
 
 from rigid_body_sim.recording.mcap import mending
@@ -183,7 +184,7 @@ def test_a_message_index_with_a_wrong_length_does_not_swallow_a_chunk(form, into
         assert mended(flipped)[0] == messages(content), begin
 
 
-@pytest.mark.parametrize('opcode', [0x7F, Opcode.CHANNEL, Opcode.ATTACHMENT])
+@pytest.mark.parametrize('opcode', [0x7F, Opcode.CHANNEL, Opcode.ATTACHMENT, Opcode.MESSAGE])
 def test_a_message_index_with_a_wrong_opcode_is_one_by_its_lengths_and_costs_nothing(opcode):
     content = small('zstd')
     for begin in [begin for kind, begin, _ in records(content) if kind == Opcode.MESSAGE_INDEX]:
@@ -297,6 +298,42 @@ def test_a_hole_is_the_time_between_the_messages_around_it(of, last, expected):
     scan = types.SimpleNamespace(
         damages=[damage], contents=types.SimpleNamespace(start_time=10, end_time=400))
     assert mending._hole(damage, scan, last) == expected
+
+
+@pytest.mark.parametrize(('expected', 'of_summary', 'cut', 'messages', 'certainty'), [
+    (10, None, True, 0, 'counted'), (12, None, True, 2, 'counted'), (12, 14, True, 2, 'counted'),
+    (None, 14, True, 4, 'counted'), (9, 14, False, 3, 'counted'),
+    (None, None, False, 3, 'counted'), (None, None, True, 3, 'unknown'),
+    (None, 9, True, 3, 'unknown')])
+def test_what_is_missing_is_told_by_who_knows_how_many_there_were_or_by_the_damages(
+        expected, of_summary, cut, messages, certainty):
+    """Of a cut file the damages do not tell how many more there were."""
+    told = of_summary and types.SimpleNamespace(
+        contents=types.SimpleNamespace(message_count=of_summary, end_time=40))
+    scan = types.SimpleNamespace(
+        contents=types.SimpleNamespace(message_count=10, start_time=10, end_time=30), told=told,
+        damages=[Damage(50, lost=2, doubtful=5)], cut_damage=Damage(7, lost=1), cut=cut)
+    found = mending.losses(scan, expected)
+    assert (found.messages, found.certainty, found.bytes, found.doubtful) == (
+        messages, certainty, 57, 5)
+    assert Losses() == (0, 'counted', 0.0, 0, 0)
+
+
+@pytest.mark.parametrize(('kinds', 'certainty'), [
+    ('cc', 'counted'), ('ec', 'estimated'), ('ce', 'estimated'), ('uc', 'unknown'),
+    ('cu', 'unknown'), ('eu', 'unknown'), ('ue', 'unknown')])
+def test_what_is_missing_is_as_certain_as_the_least_of_the_damages(kinds, certainty):
+    """Where no message is missing is no hole; the second damage is one from 10 to 210 ns."""
+    of = {'c': {'lost': 1}, 'e': {'claimed': 100}, 'u': {}}
+    scan = types.SimpleNamespace(
+        contents=types.SimpleNamespace(message_count=10, start_time=10, end_time=30), told=None,
+        damages=[Damage(50, lost=0, until=160), *(Damage(50, **of[kind]) for kind in kinds)],
+        cut_damage=None, cut=False, mean_message=25.0)
+    scan.damages[-1].until = 210
+    found = mending.losses(scan)
+    assert found.certainty == certainty
+    assert found.messages == sum({'c': 1, 'e': 4, 'u': 0}[kind] for kind in kinds)
+    assert found.seconds == near(200e-9, rel=1e-15)
 
 
 @pytest.mark.parametrize('wrong', [0, 1, -1])
