@@ -21,10 +21,13 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.scene.state import States
 from rigid_body_sim.study.scenes import (
     convex_body,
+    driven_body,
     experiment,
+    free_body,
     heavy_top,
     instruments,
     kapitza_pendulum,
+    kater_pendulum,
     sleeping_top,
 )
 from rigid_body_sim.study.scenes.systems import SYSTEMS
@@ -286,3 +289,49 @@ def test_the_reduced_length_of_a_pendulum_is_about_the_axis_of_its_tilt():
         'body.shape={box: {size: [0.3, 0.1, 0.2]}}', 'body.center_of_mass=[0, 0, 0.5]'])
     assert kapitza_pendulum.numbers(types.SimpleNamespace(scene=scene)) == (
         0.01, 300.0, 9.81, near((0.13 / 12.0 + 0.25) / 0.5, rel=1e-14))
+
+
+@pytest.mark.parametrize(('angle', 'rate', 'reach'), [
+    # phi'^2/2 = Omega^2 (cos phi - cos reach) with Omega = 3 rad/s
+    (-0.4, 0.0, 0.4), (0.0, 3.0, math.pi / 3.0), (0.6, -3.0, math.acos(math.cos(0.6) - 0.5)),
+    (0.0, 6.0, None), (0.0, 7.0, None), (0.1, 6.0, None), (0.0, 0.0, None)])
+def test_a_pendulum_swings_as_far_as_its_energy_lets_it(angle, rate, reach):
+    pendulum = types.SimpleNamespace(angle=lambda _: [angle], rate=lambda _: [rate])
+    run = types.SimpleNamespace(states=list, scene=types.SimpleNamespace(name='it'))
+    if reach is None:
+        with pytest.raises(BadInput, match='does not swing to and fro'):
+            kater_pendulum._reach(pendulum, run, 3.0)
+    else:
+        assert kater_pendulum._reach(pendulum, run, 3.0) == near(reach, rel=1e-14)
+
+
+def test_a_short_pendulum_swings_too():
+    short = load_scene('kater_pendulum', ['constraint.hinge.distance=0.05'])
+    assert kater_pendulum.Pendulum(short).length == near(0.05, rel=1e-15)
+
+
+@pytest.mark.parametrize(('changes', 'is_in_closed_form'), [
+    ([], True), (['body.inertia=[0.8, 0.9, 1.3]'], False),
+    (['effects.torque.value=[0.1, 0, 0.5]'], False),
+    (['effects.torque.value=[0, 0.1, 0.5]'], False)])
+def test_the_formula_of_a_driven_body_is_for_a_torque_about_its_axis_of_symmetry(
+        changes, is_in_closed_form, monkeypatch):
+    monkeypatch.setattr(experiment, 'Simulation', Motion)
+    run = experiment.Experiment(load_scene('driven_body', changes), 'exact')
+    first = next(driven_body.check(run))
+    assert (first.name == 'omega at 41 times') == is_in_closed_form
+
+
+@pytest.mark.parametrize(('pace', 'is_slow'), [(1.0, False), (0.01, True)])
+def test_a_body_is_followed_until_it_has_flipped_three_times(pace, is_slow):
+    omega, until = pace * np.array([0.1, 3.0, 0.2]), []
+
+    def crossings(value, begin, end, samples):
+        until.append(end)
+        return np.arange(3.0)
+    run = types.SimpleNamespace(
+        scene=load_scene('free_body', ['body.inertia=[1, 2, 3]']), crossings=crossings,
+        at=lambda _: types.SimpleNamespace(angular_velocity=omega))
+    row, = free_body.flips(run, 20.0)
+    assert until == ([near(3.5 * row.predicted[0], rel=1e-15)] if is_slow else [20.0])
+    assert (3.5 * row.predicted[0] > 20.0) == is_slow
