@@ -50,29 +50,41 @@ def test_residuals_are_relative_to_the_first_value_or_to_the_mean():
 @pytest.mark.parametrize(('slope', 'noise', 'sigmas'), [
     # block means s times -1, -1/3, 1/3, 1: a slope s of the uncertainty scatter/sqrt(20/9).
     # They scatter by s sqrt(5/9) themselves, so 2 sigmas; or less than a thousand roundings do
-    (0.25, 0.0, 2.0), (1e-3, 1.0, 1e-3 * math.sqrt(20.0 / 9.0) * math.sqrt(1000.0))])
+    (0.25, 0.0, 2.0), (5e-4, 0.5, 1e-3 * math.sqrt(20.0 / 9.0) * math.sqrt(1000.0))])
 @pytest.mark.parametrize('other', [0.0, 1.0])
-def test_a_day_is_judged_by_the_means_of_its_blocks(monkeypatch, slope, noise, sigmas, other):
+@pytest.mark.parametrize('step', [21.6, 1e-3])
+def test_a_day_is_judged_by_the_means_of_its_blocks(
+        monkeypatch, slope, noise, sigmas, other, step):
     """4000 states over 86,400 s, in 4 blocks; one quantity or another has the worst slope."""
     seen = []
 
     def residuals(simulation, times):
         seen.extend(times.tolist())
-        ticks = np.rint(times / 21.6)
+        assert len(times) <= 300
+        ticks = np.rint(times / step)
         block = (ticks - 1) // 1000
         jitter = np.where(ticks % 2 == 0, 1.0, -1.0)
         made = 0.5 + slope * (2.0 * block / 3.0 - 1.0) + noise * jitter
         quiet = jitter
         return {'one': quiet, 'two': made} if other else {'one': made, 'two': quiet}
     monkeypatch.setattr(trends, 'BLOCKS', 4)
-    monkeypatch.setattr(trends, 'LONG', False)
+    monkeypatch.setattr(trends, 'TICKS', 4000)
+    monkeypatch.setattr(trends, 'AT_ONCE', 300)
+    monkeypatch.setattr(trends, 'LONG', step == 1e-3)
     monkeypatch.setattr(trends, 'residuals', residuals)
     monkeypatch.setattr(trends, 'Simulation', lambda scene: types.SimpleNamespace(
         states=lambda times: times))
     found = trends.anchored('free_body')
     assert found.error == near(sigmas, rel=1e-5)    # 1e-6 of it is in the squares
     assert (found.bound, found.unit) == (5.0, 'sigma')
-    assert seen == near([21.6 * k for k in range(1, 4001)], rel=1e-14)
+    assert seen == near([step * k for k in range(1, 4001)], rel=1e-14)
+
+
+def test_long_runs_are_cases_of_whole_blocks():
+    assert trends.TICKS in (64_000, 100_000_000) and not trends.TICKS % trends.BLOCKS
+    assert [(case.group, case.name) for case in trends.cases()] == [
+        (5, 'free body, a day'), (5, 'heavy top, a day'),
+        (5, 'free body, anchored anew at each tick')]
 
 
 @pytest.mark.parametrize('column', [0, 1])
@@ -86,7 +98,7 @@ def test_a_walk_is_judged_by_its_mean_step(monkeypatch, column):
         out[:, 1 - column] = [1.0, 1.5, 1.0, 1.5]
         out[:, column] = [2.0, 3.0, 3.2, 4.4]
     monkeypatch.setattr(trends, 'BLOCKS', 4)
-    monkeypatch.setattr(trends, 'LONG', False)
+    monkeypatch.setattr(trends, 'TICKS', 64_000)
     monkeypatch.setattr(trends, 'walk', walk)
     found = trends.anchored_anew()
     assert found.error == near(0.4 / math.sqrt(0.14 / 9.0), rel=1e-12)

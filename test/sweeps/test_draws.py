@@ -61,6 +61,8 @@ def test_samples_are_distributed_as_they_should():
 def test_a_run_has_its_sample_whoever_asks_for_which_others(kind):
     sampled = Sampled(kind, 1.0, 2.0, 7, 'body.mass')
     all_at_once = sampled.of_runs(0, 20)
+    width = WIDTHS[KINDS[kind]]
+    assert all_at_once.shape == ((20,) if width == 1 else (20, width))
     pieces = [sampled.of_runs(first, first + 5) for first in range(0, 20, 5)]
     assert np.concatenate(pieces).tobytes() == all_at_once.tobytes()
     assert (sampled.of_runs(13, 14) == all_at_once[13]).all()

@@ -158,6 +158,22 @@ def test_pieces_that_end_together_with_one_that_fails_are_taken():
     assert sorted(taken) == [0, 1, 2, 3, 4, 7, 8, 9, 10, 11]
 
 
+def test_workers_are_looked_at_when_nothing_ends_for_long(monkeypatch):
+    monkeypatch.setattr(engine, 'PATIENCE', 1e-3)
+    workers = Workers(Client({}, 'closed'))
+    future = concurrent.futures.Future()
+    monkeypatch.setattr(workers, 'check', lambda: (future.set_result(7), Workers.check(workers)))
+    taken = []
+    with pytest.raises(Stopped, match='the Dask scheduler is gone'):
+        engine.run(workers, iter([1]), lambda *_: future, taken.append, lambda: 1)
+    assert taken == [7]    # it ended while they were looked at
+
+
+def test_the_processors_of_this_process_are_counted(monkeypatch):
+    monkeypatch.setattr(engine.os, 'sched_getaffinity', lambda process: {0: {4, 5, 7}}[process])
+    assert engine.cores() == 3
+
+
 def test_a_window_that_shrinks_waits(monkeypatch):
     """Workers that went: what they have is waited for, and nothing is added."""
     futures, added, windows = [], [], iter([3, 1, 1, 1, 1, 1, 1])

@@ -30,6 +30,11 @@ def test_blocks_cover_the_grid_once(shape, block_runs, chunk_runs):
                zip(layout.shard_shape, layout.chunk_shape, strict=True))
 
 
+def test_a_block_of_less_than_two_places_has_one():
+    assert Layout.of((9, 5), 7, 7).runs(0) == (0, 5)
+    assert Layout.of((9, 5), 10, 10).runs(0) == (0, 10)
+
+
 def test_blocks_have_about_the_size_asked():
     for shape in ((10**6, 3), (3, 10**6), (1000, 1001), (7, 11, 13, 17)):
         layout = Layout.of(shape, 1000, 100)

@@ -51,9 +51,18 @@ def test_a_piece_takes_a_second_a_fair_share_or_a_block_whatever_is_least():
 @pytest.mark.parametrize(('seconds', 'workers', 'runs'), [
     (1e-3, 1, 1000), (1e-2, 1, 100), (1e-4, 2, 10_000),    # a second
     (3.0, 1, 1), (1e-9, 1, 2**15),    # at least a run, at most a block
-    (1e-3, 1000, 125), (1e-4, 400, 500)])    # an eighth of what each of the workers does; 0.05 s
+    (1e-3, 1000, 125), (1e-4, 400, 500),    # an eighth of what each of the workers does; 0.05 s
+    (1e-2, 400, 200)])    # 400 workers ask once in 2 s each, the leader serves 200 a second
 def test_blocks_of_a_store(seconds, workers, runs):
     assert engine.block_runs(plan(1_000_000, block=2**15), seconds, workers) == runs
+
+
+def test_a_run_that_fills_more_than_a_block_is_a_piece(monkeypatch):
+    one = plan(3, quick=False)
+    one.bytes = 2 * engine.BLOCK_BYTES
+    assert pieces(one, [1e9] * 4) == [(0, 1, 0), (1, 2, 1), (2, 3, 2)]
+    monkeypatch.setattr(engine, 'SECONDS', 0.5)
+    assert pieces(plan(1000), [100.0])[0] == (0, 50, 0)
 
 
 def measured(monkeypatch, one, patience, seconds):

@@ -182,6 +182,12 @@ def test_a_name_stands_for_one_thing(dims, outputs, name):
             spec=types.SimpleNamespace(keep=keep), dims=dims, outputs={'m:f': outputs}))
 
 
+@pytest.mark.parametrize('outputs', [{}, {'m:f': [('speed', None)]}])
+def test_a_plan_has_what_its_functions_give(outputs):
+    assert Plan(specs.read(BASE), outputs).outputs == outputs
+    assert Plan(specs.read(BASE)).outputs == {}
+
+
 def test_what_a_function_returns_has_a_place_for_each_of_its_numbers():
     one = types.SimpleNamespace(outputs={'m:f': [('low', None), ('row', 5)]})
     low, row = plans._kept(one, specs.Kept('function', 'm:f'))

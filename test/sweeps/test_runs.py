@@ -71,6 +71,19 @@ def test_runs_start_as_their_scenes_say_those_of_one_scene_together(
     assert sorted([*starts, *refused]) == list(range(one.spec.size))
 
 
+@pytest.mark.parametrize(('key', 'is_chosen'), [
+    ('initial.angular_velocity.0', True), ('body.mass', False)])
+def test_what_was_chosen_for_the_template_is_for_its_scene_alone(monkeypatch, key, is_chosen):
+    one, asked = plan({key: [1.0, 2.0]}), []
+
+    def ensemble(scene, starts, times, method, *rest, **more):
+        asked.append(method)
+        raise NotConverged('body 0: it is not asked here')
+    monkeypatch.setattr(runs, 'ensemble', ensemble)
+    runs.compute(one, 0, 2)
+    assert asked[0] is one.choice if is_chosen else asked == ['auto', 'auto']
+
+
 def test_a_part_of_the_runs_starts_as_the_whole(monkeypatch):
     one = plan({'body.inertia.1': [2.0, 2.5, 2.2], 'initial.angular_velocity.0': [0.1, 0.2]},
                {'runs': 4, 'initial.orientation': 'rotation'})

@@ -7,7 +7,7 @@ from near import near
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.sweeps.draws import DIRECTION, NORMAL, UNIFORM
-from rigid_body_sim.sweeps.spec import MOST_EVENTS, Kept, again, fingerprint, read
+from rigid_body_sim.sweeps.spec import Kept, again, fingerprint, read
 
 BASE = {'scene': 'tennis_racket', 'vary': {'body.mass': [1, 2]}, 'keep': 'final'}
 WHOLE = ('orientation', 'angular_velocity', 'position', 'velocity')
@@ -106,7 +106,7 @@ def test_the_shape_is_that_of_the_keys_and_then_of_the_samples():
     ('final', Kept('final', WHOLE)), ({'final': 'position'}, Kept('final', ('position',))),
     ({'states': ['velocity', 'orientation']}, Kept('states', ('velocity', 'orientation'))),
     ('residuals', Kept('residuals')), ({'first': 'flip'}, Kept('first', 'flip')),
-    ({'all': 'flip'}, Kept('all', 'flip', MOST_EVENTS)),
+    ({'all': 'flip'}, Kept('all', 'flip', 16)),
     ({'all': 'flip', 'most': 3}, Kept('all', 'flip', 3)),
     ({'minimum': 'energy'}, Kept('minimum', 'energy')),
     ({'maximum': 'speed'}, Kept('maximum', 'speed'))])
@@ -122,6 +122,20 @@ def test_what_is_kept_is_read(entry, expected):
 def test_what_cannot_be_kept_is_refused(entry):
     with pytest.raises(BadInput, match='sweep: keep'):
         kept(entry)
+
+
+@pytest.mark.parametrize(('changes', 'said'), [
+    ({'kep': 'final'}, r'sweep: kep: is not a word of a sweep; did you mean keep\?'),
+    ({'colour': 3}, 'sweep: colour: is not .*; the words are scene, .*, keep'),
+    ({'keep': 'finall'}, r"did you mean 'final'\?"), ({'keep': 'colour'}, 'one of final, .*'),
+    ({'keep': {'first': 'flip', 'most': 2}}, 'one of final, .*'),
+    ({'keep': {'maximum': 'kinetic_enrgy'}}, r'did you mean kinetic_energy\?'),
+    ({'keep': {'maximum': 'colour'}}, 'one of orientation.x, .*'),
+    ({'keep': {'maximum': 3}}, 'one of orientation.x, .*'),
+    ({'keep': {'first': 3}}, r'the name of an event \(flip, .*')])
+def test_a_word_that_is_nearly_right_is_told_what_it_may_mean(changes, said):
+    with pytest.raises(BadInput, match=f'{said}$'):
+        spec(**changes)
 
 
 @pytest.mark.parametrize('key', ['a/b', 'run', 'time', 'axis', 'quaternion', 'block'])

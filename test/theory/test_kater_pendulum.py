@@ -32,7 +32,7 @@ def test_frequency_is_torque_over_moment():
     assert theory.frequency_from_q(G, LENGTH, GYRATION) == near(
         np.sqrt(M * G * LENGTH / moment), 1e-15)
     small = 1e-6
-    assert theory.angular_acceleration(small, 2.0) == near(-4.0 * small, 1e-11)
+    assert theory.angular_acceleration(small, 3.0) == near(-9.0 * small, 1e-11)
 
 
 @pytest.mark.parametrize('amplitude', [1e-3, 0.5, 2.0, 3.1])

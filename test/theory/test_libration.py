@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from rigid_body_sim.theory import libration as theory
 
-RATE, MOMENTS = 1.1e-3, np.array([1.2, 2.2, 2.5])
+RATE, MOMENTS = 1.1e-3, np.array([1.2, 1.9, 2.5])
 
 
 def acceleration(turn, turning):

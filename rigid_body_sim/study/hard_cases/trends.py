@@ -23,6 +23,9 @@ SIGMAS = 5.0
 BLOCKS = 64
 LONG = bool(os.environ.get('RIGID_BODY_SIM_SOAK'))
 """Whether to run the long form: 1e8 ticks, a day at 1 kHz, instead of 64,000."""
+TICKS = 100_000_000 if LONG else 64_000
+AT_ONCE = 100_000
+"""States that are held in memory."""
 
 
 def slope_in_sigmas(means, scatter):
@@ -60,13 +63,13 @@ def anchored(name):
     It takes 64,000 ticks of 1 ms spread over a day, or every one of 1e8.
     """
     simulation = Simulation(load_scene(name))
-    in_block = 100_000_000 // BLOCKS if LONG else 1000
-    step = 1e-3 if LONG else 86400.0 / (BLOCKS * in_block)
+    in_block = TICKS // BLOCKS
+    step = 1e-3 if LONG else 86400.0 / TICKS
     means, squares = [], []
     for block in range(BLOCKS):
         sums = {}
-        for first in range(0, in_block, 100_000):
-            count = min(100_000, in_block - first)
+        for first in range(0, in_block, AT_ONCE):
+            count = min(AT_ONCE, in_block - first)
             ticks = np.arange(count) + (first + block * in_block + 1)
             for key, values in residuals(simulation, simulation.states(ticks * step)).items():
                 total = sums.setdefault(key, [0.0, 0.0])
@@ -82,7 +85,7 @@ def anchored(name):
         scatter = max(values.std(), math.sqrt(max(within, 0.0) / in_block))
         worst = max(worst, slope_in_sigmas(values, scatter))
     return Outcome(worst, SIGMAS, 'sigma',
-                   f'slope of norm, energy, momenta over {BLOCKS * in_block:,} states of a day, '
+                   f'slope of norm, energy, momenta over {TICKS:,} states of a day, '
                    'stationary noise')
 
 
@@ -106,9 +109,8 @@ def walk(parameters, start, ticks, every, moments, out):
 def anchored_anew():
     """Return the Outcome of the mean step of the walk."""
     scene = load_scene('free_body')
-    ticks = 100_000_000 if LONG else 64_000
     out = np.empty((BLOCKS, 3))
-    walk(free_body.parameters(scene), scene.initial.vector, ticks, ticks // BLOCKS,
+    walk(free_body.parameters(scene), scene.initial.vector, TICKS, TICKS // BLOCKS,
          np.array(scene.body.about_center.moments), out)
     worst = 0.0
     for column in (0, 1):
@@ -117,7 +119,7 @@ def anchored_anew():
     assert np.abs(out[:, 2]).max() < 1e-14
     return Outcome(
         worst, SIGMAS, 'sigma',
-        f'mean step of energy and L^2 in {ticks:,} ticks, each anchored anew: a random walk')
+        f'mean step of energy and L^2 in {TICKS:,} ticks, each anchored anew: a random walk')
 
 
 def cases():

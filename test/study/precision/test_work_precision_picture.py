@@ -99,6 +99,19 @@ def test_who_leads_at_some_level_is_drawn_thick():
     assert figure.leaders([]) == set()
 
 
+@pytest.mark.parametrize('count', [1, 3])
+def test_ours_have_full_marks_and_two_names_stand_below_each_column(count):
+    drawn = figure.draw([RESULT] * count)
+    is_peer = {line['name']: line['is_peer'] for line in table.fronts(RESULT['lines'])}
+    for axes in drawn.axes:
+        lines = {one.get_label(): one[0] for one in axes.containers}
+        assert {name: line.get_markerfacecolor() == line.get_color()
+                for name, line in lines.items()} == {
+                    name: not peer for name, peer in is_peer.items()}
+    legend, = drawn.legends
+    assert (legend._ncols, legend.get_frame_on()) == (2 * min(2, count), False)
+
+
 def test_table_and_figure_are_those_kept():
     other = RESULT | {'problem': 'top', 'floor': 1e-10, 'lines': RESULT['lines'][2:5]}
     kept.check('work_precision', {

@@ -49,3 +49,7 @@ def test_the_angle_between_vectors_is_accurate_where_it_is_small(angle):
     v = TURNS.apply([np.sin(angle), 0.0, np.cos(angle)])
     assert instruments.angle_between(u, v) == pytest.approx(
         np.full(20, angle), rel=1e-6, abs=3e-16)
+    for shape in ((3,), (4, 5, 3)):    # of one pair, and of pairs in a grid
+        some = [np.resize(vectors, shape) for vectors in (u, v)]
+        assert instruments.angle_between(*some) == pytest.approx(
+            np.full(shape[:-1], angle), rel=1e-6, abs=3e-16)
