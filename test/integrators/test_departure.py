@@ -112,6 +112,28 @@ def test_a_departure_ends_before_what_it_leaves_out_counts(moments, k, spin, c):
         sizes.append(np.hypot(*np.delete(SKEW.T @ out[5:8], k)))
     # measured: 0.28 and 0.25 of NEAR
     assert 0.1 * NEAR * abs(spin) < max(sizes) <= NEAR * abs(spin)
+    omega[[k - 2, k - 1]] = 6e-10 * spin, 7e-10 * spin    # near, and not for as long as it says
+    assert departure(scene, state_of(scene, omega)) is None
+
+
+def test_the_end_holds_for_components_that_grow_by_a_turn():
+    """Their rates are those of a matrix whose norm is up to twice its largest coefficient.
+
+    Here, where dissipation all but stops the turns, it is 1.15 omega, the coefficient 0.75 omega.
+    """
+    scene = scene_of((1.0, 2.0, 2.5), c=9.165 / 1.5, axes=np.eye(3))
+    out, largest = np.empty(14), 0.0
+    for angle in np.linspace(0.0, np.pi, 9):
+        for power in np.linspace(-26.0, -18.0, 17):
+            small = 10.0**power * np.array([np.cos(angle), np.sin(angle)])
+            found = departure(scene, state_of(scene, np.array([1.5, *small]), np.eye(3)))
+            found.state(found.end, out)
+            largest = max(largest, np.hypot(*out[6:8]) / (1.5 * NEAR))
+    assert 0.5 < largest <= 1.0    # measured: 0.58
+
+
+def test_the_folds_end_where_the_components_are_near():
+    assert 0.5 < math.exp(-FOLDS) / NEAR < 2.5    # 2.06
 
 
 @pytest.mark.parametrize(('small', 'departs', 'arrives'), [
