@@ -147,6 +147,13 @@ def test_a_state_is_near_an_axis_where_products_are_rounding(small, departs, arr
     assert (arrival(scene, off) is not None) == (small == 0.0)    # the axis of the least moment
 
 
+@pytest.mark.parametrize('k', range(2))
+def test_a_needle_departs_from_no_axis(k):
+    scene, omega = scene_of((2.0, 2.0, 0.0), axes=np.eye(3)), np.zeros(3)
+    omega[[k, 1 - k]] = 1.0, 1e-12
+    assert departure(scene, state_of(scene, omega, np.eye(3))) is None
+
+
 @pytest.mark.parametrize(('moments', 'rate'), [
     ((2.0, 3.0, 4.5), 0.3 * (21.0 / 4.5) * 1.25), ((4.5, 3.0, 2.0), 0.3 * (21.0 / 4.5) * 1.25),
     ((2.0, 2.0, 2.0), 0.0), ((2.0, 2.0, 0.0), 0.0)], ids=['body', 'turned', 'sphere', 'needle'])
@@ -246,4 +253,5 @@ def test_a_body_that_arrives_is_seen_at_the_first_of_fixed_times_after_it():
     again.state(2.0 + T, one)
     assert one[1] == 5.0
     assert again.entries_until(2.0 + 3.0 * T) == near(2.0 + 3.0 * T, rel=0.0)
+    assert course.TELLS_EVENTS is False    # it has no function for them
     assert course.kinks(9.0) == []

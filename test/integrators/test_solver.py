@@ -42,6 +42,11 @@ def test_it_knows_its_start_and_what_a_march_does_not_do(scene, winds, carried, 
     vector[5 + axis] = -2.0
     started = found.start(vector)
     assert (started.begin, started._latest) == (3.0, 3.0 + 2.0 ** 51)
+    other = found.at(1e-6, 500, 0.1)
+    assert (other.accuracy, other.most, other.wanted) == (1e-6, 500, 0.1)
+    assert (other.scene, other.method, other.horizon) == (
+        found.scene, found.method, found.horizon)
+    assert (found.accuracy, found.most, found.wanted) == (1e-9, None, math.inf)
 
 
 @pytest.mark.parametrize(('first', 'last', 'error'), [

@@ -143,6 +143,8 @@ def test_advice_does_not_depend_on_units(scale):
     for one, least, most in ((sharp, 0.0, 1e20), (over, 1e10, 1e17)):
         assert added(one, [0.0, 1.0], size=least * scale)[:2] == (0, SHORTER)
         assert added(one, [0.0, 1.0], size=most * scale)[:2] == (1, LONGER)
+    fair = {0: lambda t: scale / ((t - 0.5) ** 2 + 1.0)}
+    assert added(fair, [0.0, 1.0])[:2] == (1, KEPT)
 
 
 def test_an_integrand_is_measured_by_its_size_in_its_own_panel():

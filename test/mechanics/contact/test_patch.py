@@ -35,6 +35,10 @@ def test_a_patch_has_a_third_friction_that_is_the_couple_over_its_radius(seed):
     assert np.array(M) @ friction + N * np.array(c) + b_slip == pytest.approx(
         [u1, u2, rho * w], abs=1e-14)
     assert np.dot(n, friction) + nn * N + bn == pytest.approx(un, abs=1e-14)
+    friction, N = patch_sticking(Patch(M, c, n, nn, b_slip, bn))    # which keeps it at rest
+    assert np.array(M) @ friction + N * np.array(c) + b_slip == pytest.approx(
+        np.zeros(3), abs=1e-12)
+    assert np.dot(n, friction) + nn * N + bn == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize('seed', range(4))
