@@ -20,6 +20,7 @@ from rigid_body_sim.mechanics.contact.patch import (
 )
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('seed', range(3))
 def test_a_patch_has_a_third_friction_that_is_the_couple_over_its_radius(seed):
     """The velocities (u_1, u_2, rho w) and u_n follow the forces (f_1, f_2, T/rho) and N."""
