@@ -112,6 +112,28 @@ def test_a_departure_ends_before_what_it_leaves_out_counts(moments, k, spin, c):
         sizes.append(np.hypot(*np.delete(SKEW.T @ out[5:8], k)))
     # measured: 0.28 and 0.25 of NEAR
     assert 0.1 * NEAR * abs(spin) < max(sizes) <= NEAR * abs(spin)
+    omega[[k - 2, k - 1]] = 6e-10 * spin, 7e-10 * spin    # near, and not for as long as it says
+    assert departure(scene, state_of(scene, omega)) is None
+
+
+def test_the_end_holds_for_components_that_grow_by_a_turn():
+    """Their rates are those of a matrix whose norm is up to twice its largest coefficient.
+
+    Here, where dissipation all but stops the turns, it is 1.15 omega, the coefficient 0.75 omega.
+    """
+    scene = scene_of((1.0, 2.0, 2.5), c=9.165 / 1.5, axes=np.eye(3))
+    out, largest = np.empty(14), 0.0
+    for angle in np.linspace(0.0, np.pi, 9):
+        for power in np.linspace(-26.0, -18.0, 17):
+            small = 10.0**power * np.array([np.cos(angle), np.sin(angle)])
+            found = departure(scene, state_of(scene, np.array([1.5, *small]), np.eye(3)))
+            found.state(found.end, out)
+            largest = max(largest, np.hypot(*out[6:8]) / (1.5 * NEAR))
+    assert 0.5 < largest <= 1.0    # measured: 0.58
+
+
+def test_the_folds_end_where_the_components_are_near():
+    assert 0.5 < math.exp(-FOLDS) / NEAR < 2.5    # 2.06
 
 
 @pytest.mark.parametrize(('small', 'departs', 'arrives'), [
@@ -123,6 +145,13 @@ def test_a_state_is_near_an_axis_where_products_are_rounding(small, departs, arr
     assert (arrival(scene, vector) is not None) == arrives
     off = state_of(scene, np.array([-1.0, 0.6 * small, 0.8 * small]), np.eye(3))
     assert (arrival(scene, off) is not None) == (small == 0.0)    # the axis of the least moment
+
+
+@pytest.mark.parametrize('k', range(2))
+def test_a_needle_departs_from_no_axis(k):
+    scene, omega = scene_of((2.0, 2.0, 0.0), axes=np.eye(3)), np.zeros(3)
+    omega[[k, 1 - k]] = 1.0, 1e-12
+    assert departure(scene, state_of(scene, omega, np.eye(3))) is None
 
 
 @pytest.mark.parametrize(('moments', 'rate'), [
@@ -224,4 +253,5 @@ def test_a_body_that_arrives_is_seen_at_the_first_of_fixed_times_after_it():
     again.state(2.0 + T, one)
     assert one[1] == 5.0
     assert again.entries_until(2.0 + 3.0 * T) == near(2.0 + 3.0 * T, rel=0.0)
+    assert course.TELLS_EVENTS is False    # it has no function for them
     assert course.kinks(9.0) == []

@@ -12,11 +12,14 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import solver
 from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED
 from rigid_body_sim.integrators.solver import Stepped, _check_control, _latest, _naming
-from rigid_body_sim.scene.scene import load_scene
+from rigid_body_sim.scene.scene import load_scene, parse_scene
 
 pytestmark = pytest.mark.without_numba
 
 METHOD = types.SimpleNamespace(NAME='dop8')
+SPRUNG = ('{scene: s, body: {mass: 1, inertia: [1, 1, 1]}, constraint: {hinge: {axis: [0, 0, 1], '
+          'through: [0, 0, 0]}}, effects: [spring: {stiffness: 9}], initial: {}}')
+"""A body that a torsion spring holds far from the ends of its angle."""
 
 
 @pytest.mark.parametrize(('begin', 'rate', 'latest'), [
@@ -24,6 +27,26 @@ METHOD = types.SimpleNamespace(NAME='dop8')
 def test_a_body_turns_until_its_radians_are_more_than_doubles_count(begin, rate, latest):
     """They are 2^52; of one that does not turn no time is too late that is a double."""
     assert _latest(begin, rate) == near(latest, rel=1e-15)    # 0
+
+
+@pytest.mark.parametrize('axis', range(3))
+@pytest.mark.parametrize(('scene', 'winds', 'carried'), [
+    ('free_body', False, False), ('kapitza_pendulum', False, True), (SPRUNG, True, False)])
+def test_it_knows_its_start_and_what_a_march_does_not_do(scene, winds, carried, axis):
+    """It turns with 2 rad/s, about any axis: 2^51 s of it are what doubles count."""
+    found = Stepped(parse_scene(scene) if scene is SPRUNG else load_scene(scene), 'dop8', 1e-9)
+    assert (found._may_wind, found._carried, found._may_leave_doubles) == (
+        winds, carried, carried)
+    vector = found.scene.initial.vector.copy()
+    vector[0], vector[5:8] = 3.0, 0.0
+    vector[5 + axis] = -2.0
+    started = found.start(vector)
+    assert (started.begin, started._latest) == (3.0, 3.0 + 2.0 ** 51)
+    other = found.at(1e-6, 500, 0.1)
+    assert (other.accuracy, other.most, other.wanted) == (1e-6, 500, 0.1)
+    assert (other.scene, other.method, other.horizon) == (
+        found.scene, found.method, found.horizon)
+    assert (found.accuracy, found.most, found.wanted) == (1e-9, None, math.inf)
 
 
 @pytest.mark.parametrize(('first', 'last', 'error'), [
@@ -133,10 +156,11 @@ def test_jumps_below_a_hundredth_of_the_accuracy_are_no_matter_to_the_ledger(
 
 def test_events_are_those_after_a_time():
     """A watcher of many tells those of a tick again."""
-    watcher = types.SimpleNamespace(
-        events=lambda until, tick: [(1.0, 'a'), (2.0, 'b'), (3.0, 'c')])
+    watcher = types.SimpleNamespace(    # no tick is passed over unless it is given
+        events=lambda until, tick: [(1.0, 'a'), (2.0, 'b'), (3.0 + tick, 'c')])
     of = types.SimpleNamespace(_course=types.SimpleNamespace(TELLS_EVENTS=False), _watcher=watcher)
     assert Stepped.events(of, 2.0, 3.0) == [(3.0, 'c')]
+    assert Stepped.events(of, 2.0, 3.0, 0.25) == [(3.25, 'c')]
 
 
 def test_what_fails_in_a_body_of_many_names_it():

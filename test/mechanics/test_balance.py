@@ -26,6 +26,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 SKEW = ('{mass: 2.0, inertia: [[0.05, 0.004, -0.002], [0.004, 0.06, 0.003], [-0.002, 0.003, '
         '0.03]], center_of_mass: [0.02, -0.01, 0.1]}')
 HINGE = '{hinge: {axis: [1, 2, 0.5], through: [0.05, 0, -0.1]}}'
+AT = '{pivot: {at: [0.05, 0, -0.1]}}'
 WRENCH = Wrench((3.0, -1.0, 2.0), (0.2, 0.5, 0.1), 'body')
 G = 9.81
 
@@ -69,7 +70,7 @@ def momentum(body, vector, point):
     return p, spin + np.cross(vector[8:11] + lever - point, p)
 
 
-@pytest.mark.parametrize('constraint', ['free', 'pivot', HINGE])
+@pytest.mark.parametrize('constraint', ['free', 'pivot', HINGE, AT])
 @pytest.mark.parametrize(
     'effects',
     ['[gravity: {g: 9.81}]', '[gravity: {g: 9.81}, drag: {linear: 0.5, angular: 0.01}]'])
@@ -96,11 +97,11 @@ def test_momentum_changes_by_all_forces_and_torques(constraint, effects):
                                couple + np.cross(arm, force) + balance.torque, atol=2e-7)
 
 
-@pytest.mark.parametrize('constraint', ['pivot', HINGE])
+@pytest.mark.parametrize('constraint', ['pivot', HINGE, AT])
 def test_fixed_points_stay(constraint):
     vector, made = state(constraint).vector, scene(constraint)
     balance = Dynamics(made).balance(vector, WRENCH)
-    point = np.array((0.05, 0.0, -0.1) if constraint == HINGE else (0.0, 0.0, 0.0))
+    point = np.array((0.0, 0.0, 0.0) if constraint == 'pivot' else (0.05, 0.0, -0.1))
     omega, growth = vector[5:8], balance.angular_acceleration
     carried = np.cross(growth, point) + np.cross(omega, np.cross(omega, point))
     assert np.abs(balance.acceleration + rotate(*vector[1:5], *carried)).max() < 1e-14

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from near import near
 
 from rigid_body_sim.mechanics.bounds import borne, drive, swing_momentum, swing_rate, unbounded
 from rigid_body_sim.scene.effects.wrench import Wrench
@@ -25,6 +26,7 @@ HINGE = '{hinge: {axis: [0, 1, 0], through: [0, 0, 0.4]}}'
 def test_a_drive_turns_a_body_about_its_least_moment():
     """5 N m: over 2 for a free body; about a point the body of 2 + 2*0.16 is no lighter."""
     assert drive(scene('free', TORQUE), None) == pytest.approx(2.5)
+    assert drive(scene('free', 'torque: {value: [0, 0, 1]}'), None) == 0.5
     held = scene('pivot', TORQUE)
     least = min(held.constraint.inertia(held.body).moments)
     assert drive(held, None) == pytest.approx(5.0 / least)
@@ -53,6 +55,12 @@ def test_a_held_force_drives_by_its_lever_about_what_holds_the_body(constraint, 
     assert both == pytest.approx(alone * (2.0 + 10.0 * lever) / 2.0)
     driven = drive(scene(constraint, TORQUE), Wrench(torque=(0.0, 0.0, 2.0)))
     assert driven == pytest.approx(alone * 7.0 / 2.0)
+
+
+def test_a_weight_that_gives_a_joule_swings_the_body_by_it():
+    """M g r is 2 * 5/3 * 0.3 J, and the moment 3.18 kg m^2."""
+    rate = swing_rate(scene(HINGE, f'gravity: {{g: {5.0 / 3.0!r}}}'))
+    assert rate == near(2.0 * math.sqrt(1.0 / 3.18), rel=1e-14)
 
 
 def test_a_pendulum_let_go_upright_reaches_its_swing_rate_and_no_more():

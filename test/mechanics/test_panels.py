@@ -136,6 +136,26 @@ def test_a_small_error_beside_a_large_integral_is_rounding():
     assert added(both, [0.0, 1.0], size=np.array([0.0, 1e20]))[1] == SHORTER
 
 
+@pytest.mark.parametrize('scale', [1e-10, 1e10])
+def test_advice_does_not_depend_on_units(scale):
+    sharp = {0: lambda t: scale / ((t - 0.5) ** 2 + 0.01)}
+    over = {1: lambda t: scale * math.exp(-1e4 * t)}
+    for one, least, most in ((sharp, 0.0, 1e20), (over, 1e10, 1e17)):
+        assert added(one, [0.0, 1.0], size=least * scale)[:2] == (0, SHORTER)
+        assert added(one, [0.0, 1.0], size=most * scale)[:2] == (1, LONGER)
+    fair = {0: lambda t: scale / ((t - 0.5) ** 2 + 1.0)}
+    assert added(fair, [0.0, 1.0])[:2] == (1, KEPT)
+
+
+def test_an_integrand_is_measured_by_its_size_in_its_own_panel():
+    """A millionth of what it was in the panel before, and jagged by 1e-7 of it."""
+    def falls(time):
+        return 1e6 if time < 1.0 else 1.0 + 1e-7 * math.cos(1e4 * time)
+    assert added({0: falls}, [0.0, 1.0, 2.0], longest=1.0)[:2] == (1, SHORTER)
+    assert added({0: lambda time: falls(3.0 - time)}, [1.0, 2.0, 3.0], longest=1.0)[:2] == (
+        0, SHORTER)
+
+
 def test_a_trajectory_that_is_uncertain_makes_no_panel_shorter():
     def jagged(time):
         return 1.0 + 1e-6 * math.cos(1e4 * time)

@@ -7,6 +7,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import types
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from near import near
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.motions import sliding_sphere as motion
 from rigid_body_sim.numerics.rotations import rotate
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -53,6 +55,20 @@ def kinetic(state, parameters=BALL):
 
 def world_spin(state):
     return np.array(rotate(*state[1:5], *state[5:8]))
+
+
+@pytest.mark.parametrize(('mechanism', 'acting', 'moment', 'taken'), [
+    (Mechanism.TABLE, ['friction'], 0.1, True), (Mechanism.TABLE, [], 0.1, True),
+    (Mechanism.PLANE, ['friction'], 0.1, False), (Mechanism.FREE, [], 0.1, False),
+    (Mechanism.TABLE, ['friction', None], 0.1, False), (Mechanism.TABLE, [None], 0.1, False),
+    (Mechanism.TABLE, ['friction'], 0.0, False)])
+def test_it_takes_a_ball_with_moments_on_a_table_under_its_contact_alone(
+        mechanism, acting, moment, taken):
+    scene = types.SimpleNamespace(
+        constraint=types.SimpleNamespace(mechanism=mechanism),
+        acting=[types.SimpleNamespace(contact=contact) for contact in acting],
+        body=types.SimpleNamespace(about_center=types.SimpleNamespace(moments=(moment,) * 3)))
+    assert motion.absorbs(scene) is taken
 
 
 # parts of a state and the size against which their errors are counted

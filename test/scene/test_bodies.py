@@ -163,6 +163,28 @@ def test_lamina_is_legal_in_any_order(order):
     assert bodies.make_body(1.0, order).about_center.moments == order
 
 
+def test_a_rod_is_legal_where_rounding_makes_its_moments_differ():
+    moments = (0.0, 1.0, 1.0 + EPS)
+    assert bodies.make_body(1.0, moments).about_center.moments == moments
+
+
+def test_a_tensor_that_is_given_is_kept_as_it_was_given():
+    """Not as its moments and axes give it back, which are rounded."""
+    for seed in range(3):
+        turn = Rotation.random(random_state=seed).as_matrix()
+        tensor = turn @ np.diag([1.0, 2.0, 2.5]) @ turn.T
+        tensor = 0.5 * (tensor + tensor.T)
+        assert [list(row) for row in bodies.Inertia.of_matrix(tensor).exact] == tensor.tolist()
+
+
+@pytest.mark.parametrize(('moments', 'center'), [
+    ((1e151, 1e151, 1.0), (0.0, 0.0, 0.0)), ((1.0, 1.0, 1.0), (0.0, 1e76, 0.0)),
+    ((0.0, 1e151, 1e151), (1e76, 0.0, 0.0))])
+def test_one_moment_whose_square_is_no_double_is_refused(moments, center):
+    with pytest.raises(BadInput, match=r'a moment of inertia of .*, about the middle or'):
+        bodies.make_body(1.0, moments, center)
+
+
 @pytest.mark.parametrize(('moments', 'words'), [
     ((1.0, 2.0, 3.00001), 'triangle inequality'), ((-1.0, 2.0, 2.0), 'negative'),
     ((0.0, 0.0, 0.0), 'at least two'),

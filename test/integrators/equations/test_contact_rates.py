@@ -159,8 +159,8 @@ def row_of(surface, effects, mode, slip, changes, start=None):
     scene = scene_of(surface, EFFECTS + effects, SLOPE)
     bound = OnPlane(scene, None, None, None)
     p, y, row = bound.parameters(0.0), np.zeros(UNKNOWNS.size), np.empty(ROW.size)
-    c = CONTACT.load(p.tolist())._replace(mode=mode, swift=1.0, creep=1.0, **{
-        'until': 3.0, **changes})
+    c = CONTACT.load(p.tolist())._replace(mode=mode, **{
+        'swift': 1.0, 'creep': 1.0, 'until': 3.0, **changes})
     CONTACT.store(p, c)
     q = tuple((np.array([0.1, -0.5, 0.3, 0.8]) / np.sqrt(0.99)).tolist())
     omega, n = np.array([0.3, -0.8, 0.5]), np.array(matrix(*q)[2])
@@ -261,6 +261,8 @@ def test_a_phase_obeys_newton_and_euler_and_books_all_the_heat_of_its_contact(na
         assert np.hypot(*row.slip) == near(now.u[0] * across, rel=1e-12)
         assert rates.ledger.slid == near(heat * across ** 2, rel=1e-12)
         assert (across < 0.9999) == (c.patch > 0.0)
+        # what is left of the speed at which a creep ends; it lags too little to end it
+        assert 1.0 - row.watched.grip == near(now.u[0], rel=1e-6)
     elif c.patch:
         assert rates.ledger.spun == pytest.approx(
             -pace * c.patch * friction[2] * spin, rel=1e-9, abs=1e-16)

@@ -220,6 +220,17 @@ def test_a_body_without_a_moment_about_its_hinge_is_refused():
         equations.refuse_no_moment(scene, body)
 
 
+@pytest.mark.parametrize('constraint', ['pivot', HINGE])
+def test_a_force_is_refused_where_a_bearing_would_balance_it(constraint):
+    """Also one beside a torque of the same effect, whatever the effects before it give."""
+    sail = types.SimpleNamespace(name='sail', breakpoints=(), acting=lambda frame, time: [
+        types.SimpleNamespace(gives=gives) for gives in ('torque', 'force')])
+    scene = parse_scene(f'scene: s\nbody: {{mass: 1, inertia: [1, 1, 1]}}\nconstraint: '
+                        f'{constraint}\neffects: [{TORQUE}]\ninitial: {{}}\n')
+    with pytest.raises(BadInput, match=r'^effects\.sail: gives a force, and a bearing'):
+        Equations(scene, sail)
+
+
 def test_a_start_has_the_parameters_of_its_time_and_all_unknowns():
     made = equations_of(HINGE, 'torque: {times: [1], values: [[0, 0, 5]]}')
     vector = np.zeros(14)

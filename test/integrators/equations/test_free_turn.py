@@ -13,6 +13,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from rigid_body_sim.integrators.equations import free_turn
 from rigid_body_sim.integrators.equations.euler import EULER, FIXED, MOMENTS
 from rigid_body_sim.integrators.equations.free_turn import LEAST, turned_freely
 from rigid_body_sim.numerics.rotations import angle_between
@@ -106,3 +107,11 @@ def test_a_body_that_turns_about_one_axis_turns_by_its_rate_times_the_time(axis,
 def test_a_drift_of_no_time_changes_nothing():
     start, lost = (0.1, 0.2, -0.3, math.sqrt(0.86), 0.7, -0.4, 1.1), (1e-18,) * 7
     assert turned_freely(parameters_of((2.0, 3.0, 4.0)), start, lost, 0.0) == (start, lost)
+
+
+@pytest.mark.without_numba
+def test_nothing_is_read_of_a_series_that_is_not_written(monkeypatch):
+    p, start = parameters_of((2.0, 3.0, 4.0)), (0.1, 0.2, -0.3, math.sqrt(0.86), 0.7, -0.4, 1.1)
+    expected = turned_freely(p, start, NOTHING, 0.2)
+    monkeypatch.setattr(free_turn.np, 'empty', lambda shape: np.full(shape, math.nan))
+    assert turned_freely(p, start, NOTHING, 0.2) == expected

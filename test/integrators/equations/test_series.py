@@ -13,7 +13,7 @@ from rigid_body_sim.integrators.equations.series import (
     has_formulas,
     has_phases,
 )
-from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.rotations import rotate, rotate_back
 from rigid_body_sim.scene.scene import parse_scene
 
 pytestmark = pytest.mark.without_numba
@@ -72,6 +72,27 @@ def test_a_couple_of_the_world_and_a_hinge_are_told():
     hinged = Series(scene([GRAVITY], '{hinge: {axis: [0, 0, 1]}}'))
     assert (couple.coupled, couple.hinged) == (True, False)
     assert (hinged.coupled, hinged.hinged) == (False, True)
+
+
+def test_one_drag_on_the_turns_is_enough_to_have_some():
+    slowed = 'drag: {angular: 0.2}'
+    assert [Series(scene(effects)).dragged for effects in (
+        [GRAVITY, slowed], [slowed, TORQUE], [GRAVITY, TORQUE])] == [True, True, False]
+
+
+@pytest.mark.parametrize('axis', [
+    (0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0.0, 0.8, 0.6), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0),
+    (0.0, 0.6, -0.8), (2.0 / 7.0, -3.0 / 7.0, -6.0 / 7.0), (0.0, 0.0, -1.0)])
+def test_a_hinge_is_the_third_axis_of_its_frame_up_or_down(axis):
+    """Its moment is n . I n and M times the square of the distance of the centre from it."""
+    frame = Series(scene([GRAVITY], f'{{hinge: {{axis: {list(axis)}}}}}')).frame
+    up, arm = np.array(axis) if axis[2] >= 0.0 else -np.array(axis), np.array([0.7, 0.2, -0.3])
+    assert rotate(*frame.axes, 0.0, 0.0, 1.0) == pytest.approx(up, abs=1e-15)
+    assert np.linalg.norm(frame.axes) == near(1.0, rel=1e-15)
+    moment = up @ np.diag([3.0, 4.0, 5.0]) @ up + 2.0 * np.sum(np.cross(up, arm) ** 2)
+    assert frame.moments == near((0.0, 0.0, moment), rel=1e-14)
+    away = np.cross(up, rotate(*frame.axes, *frame.arm))
+    assert away == pytest.approx(np.cross(up, arm), abs=1e-15)
 
 
 @pytest.mark.parametrize(('effects', 'have'), [

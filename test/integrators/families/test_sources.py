@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from near import near
 
+from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.equations.relaxation import Relaxation
 from rigid_body_sim.integrators.families import (
     collocation,
@@ -18,8 +19,9 @@ from rigid_body_sim.integrators.families import (
     runge_kutta,
     scipy_methods,
 )
-from rigid_body_sim.integrators.marching import relaxing
+from rigid_body_sim.integrators.marching import relaxing, unroll
 from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
+from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -163,8 +165,61 @@ def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
     assert CONTROL.load(control.tolist()) == Control(0.0, 0.02, 0.0)
 
 
-@pytest.mark.parametrize('family', [
-    collocation, composition, engine_step, power_series, runge_kutta, scipy_methods])
+def test_a_march_of_steps_with_an_error_knows_what_rounding_leaves_of_the_acceleration(
+        monkeypatch):
+    """2^-51 of its largest: that of all potentials, swing_rate^2, and that of what is borne."""
+    monkeypatch.setattr(one_step, 'swing_rate', lambda scene: 3.0)
+    monkeypatch.setattr(one_step, 'borne', lambda scene: 5.0)
+    stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None,
+                                    method=METHODS['dop8'])
+    control, point = one_step.begin(stepped, types.SimpleNamespace(SIZE=7))
+    assert CONTROL.load(control[:CONTROL.size].tolist()) == near(
+        Control(2e-11, 0.0, 0.0), rel=1e-15)
+    assert control[CONTROL.size] == 14.0 * 2.0 ** -51
+    assert control[CONTROL.size + 1:].tolist() == list(unroll.weights(METHODS['dop8']))
+    assert (len(point), any(point)) == (VALUES + 14, False)
+
+
+def test_each_relaxation_stands_behind_those_before_it(monkeypatch):
+    found, places = [], collocation._places(13)
+    monkeypatch.setattr(collocation, 'specialise', lambda template, **bindings: found.append(
+        bindings) or types.SimpleNamespace(__name__='made'))
+    two = [types.SimpleNamespace(first=4, rates=[1.0, 2.0, 3.0]),
+           types.SimpleNamespace(first=10, rates=[4.0, 5.0])]
+    assert collocation._relax(two, places) == 'made:relax'
+    first = collocation._end(places)
+    blocks = (4, 3, first), (10, 2, first + relaxing.PART)
+    assert found == [{'BLOCKS': f'BLOCKS = {blocks!r}\n',
+                      'RATES': f'RATES = {places["RATES"]}\n'}]
+    assert made(collocation._relax([], places))(None, None, None, None) is None
+
+
+@pytest.mark.parametrize(('step', 'mechanism', 'expanded', 'side_by_side'), [
+    (None, Mechanism.POINT, False, True), (0.1, Mechanism.POINT, False, False),
+    (None, Mechanism.PLANE, False, False), (None, Mechanism.POINT, True, False)])
+def test_series_of_a_few_kinds_that_adapt_go_side_by_side(
+        step, mechanism, expanded, side_by_side, monkeypatch):
+    monkeypatch.setattr(power_series.batches, 'Batch', lambda *them: them)
+    equations = object.__new__(power_series.Expanded) if expanded else object()
+    stepped = types.SimpleNamespace(
+        step=step, accuracy=1e-9, horizon=50.0,
+        scene=types.SimpleNamespace(constraint=types.SimpleNamespace(mechanism=mechanism)))
+    found = power_series.batch(types.SimpleNamespace(equations=equations), stepped, [1.0, 2.0])
+    assert found == ((equations, near(2e-11, rel=1e-15), [1.0, 2.0]) if side_by_side else None)
+
+
+FAMILIES = collocation, composition, engine_step, power_series, runge_kutta, scipy_methods
+
+
+@pytest.mark.parametrize('family', FAMILIES)
+def test_a_family_declares_what_it_can(family):
+    """Series have no kinks, and SciPy's solvers step over them (docs/scenes.md)."""
+    assert family.KINKS is (family not in (power_series, scipy_methods))
+    assert family.LANES is hasattr(family, 'batch') is (family is power_series)
+    assert family.TABLE is hasattr(family, 'table') is (family is runge_kutta)
+
+
+@pytest.mark.parametrize('family', FAMILIES)
 def test_a_family_takes_a_wrench_where_its_equations_have_its_numbers(family):
     scene = parse_scene('scene: a\nbody: {mass: 2, inertia: [0.2, 0.3, 0.4]}\nconstraint: pivot\n'
                         'effects: [gravity: {g: 9.81}]\ninitial: {}\n')

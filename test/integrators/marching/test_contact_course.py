@@ -396,7 +396,8 @@ def test_an_event_has_the_name_of_the_phase_that_follows(
     """It stands before what has happened since."""
     body = Body(monkeypatch, '_tell')
     body.p[MODE], body.p[PATCH], body._over = mode, patch, over
-    body._phases, body._events = [types.SimpleNamespace(p=body.p)], ['before', 'since']
+    body._events = ['before', 'since']
+    body._phases = [types.SimpleNamespace(p=one) for one in (np.full(SIZE, math.nan), body.p)]
     PlaneCourse._tell(body, 102.5, 1, died)
     assert body._events == ['before', *([(102.5, name, {})] if name else []), 'since']
 

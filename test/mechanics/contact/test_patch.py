@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from near import near
 
+from rigid_body_sim.mechanics.contact.laws import System
 from rigid_body_sim.mechanics.contact.patch import (
     Patch,
     _turn,
@@ -15,7 +16,30 @@ from rigid_body_sim.mechanics.contact.patch import (
     patch_pivoting,
     patch_slipping,
     patch_sticking,
+    patch_system,
 )
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('seed', range(3))
+def test_a_patch_has_a_third_friction_that_is_the_couple_over_its_radius(seed):
+    """The velocities (u_1, u_2, rho w) and u_n follow the forces (f_1, f_2, T/rho) and N."""
+    draw, rho = np.random.default_rng(seed), 0.3
+    K, b, f = draw.normal(size=(4, 4)), draw.normal(size=4), draw.normal(size=4)
+    system = System(tuple(map(tuple, K[:3, :3].tolist())), tuple(b[:3].tolist()))
+    M, c, n, nn, b_slip, bn = patch_system(system, K[3, :3].tolist(), K[:3, 3].tolist(),
+                                           (b[3], K[3, 3]), rho)
+    f1, f2, N, couple = f
+    friction = np.array([f1, f2, couple / rho])
+    u1, u2, un, w = K @ f + b
+    # measured: 2e-16
+    assert np.array(M) @ friction + N * np.array(c) + b_slip == pytest.approx(
+        [u1, u2, rho * w], abs=1e-14)
+    assert np.dot(n, friction) + nn * N + bn == pytest.approx(un, abs=1e-14)
+    friction, N = patch_sticking(Patch(M, c, n, nn, b_slip, bn))    # which keeps it at rest
+    assert np.array(M) @ friction + N * np.array(c) + b_slip == pytest.approx(
+        np.zeros(3), abs=1e-12)
+    assert np.dot(n, friction) + nn * N + bn == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize('seed', range(4))

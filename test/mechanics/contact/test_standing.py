@@ -202,6 +202,22 @@ def test_a_disk_that_has_come_to_rest_is_held_by_its_face(friction, tilt, lies):
         assert balance.acceleration[2] == near(-0.8 * 9.81, rel=1e-3)
 
 
+@pytest.mark.parametrize(('omega', 'velocity', 'share'), [
+    ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0), ((0.0, 0.0, 1e-3), (0.0, 0.0, 0.0), 0.2),
+    ((1e-3, 0.0, 0.0), (0.0, 0.0, 0.0), 0.2), ((0.0, 0.0, 0.0), (1e-3, 0.0, 0.0), 0.2),
+    ((0.0, 0.0, 0.0), (0.0, -1e-3, 0.0), 0.2)])
+def test_a_disk_that_turns_or_moves_at_all_is_not_held_by_its_face(omega, velocity, share):
+    """At one point of its edge it falls with 4 g/5: the plane bears the rest of its weight."""
+    one = Standing(parse_scene(
+        'scene: s\nbody: {mass: 2.0, shape: {disk: {radius: 0.5}}}\nconstraint: table\n'
+        'effects: [gravity: {g: 9.81}, sliding_friction: {mu: .inf}, '
+        'rolling_friction: {viscous: 1.0e-9}]\n'
+        'initial: {euler_zyz: [0.3, 1.0e-7, 0.0], rolling: true}\n'))
+    force, _, _ = on_body(one, Rotation.from_rotvec([1e-7, 0.0, 0.0]), np.array(omega),
+                          np.array([0.3, 0.2, 0.5e-7]), np.array(velocity), couple=np.zeros(3))
+    assert force[2] == near(share * 9.81 * MASS, rel=1e-2)
+
+
 LOW_TORUS = ((np.sin(2.5e-4), 0.0, 0.0, np.cos(2.5e-4)), -0.2, 0.5)
 
 
@@ -245,7 +261,9 @@ def test_the_force_at_an_instant_is_the_one_of_the_phase_that_the_body_is_in(nam
     (0.5, -1e-3, 0.5 + 0.04), (0.02, 0.0, 0.0), (0.02, 1e-9, 0.02 - 0.04),
     (0.02, -1e-9, 0.02 + 0.04)])
 @pytest.mark.parametrize('spin', [0.0, 0.7])
-def test_a_ball_begins_to_roll_down_where_friction_does_not_hold_it(slope, rolls, growth, spin):
+@pytest.mark.parametrize('upright', [True, False])
+def test_a_ball_begins_to_roll_down_where_friction_does_not_hold_it(
+        slope, rolls, growth, spin, upright):
     """It rolls with 5/7 g (sin - C cos) down, and stays where C is more than the slope.
 
     Rolling friction of a force C N is a couple R C N; while the ball goes up both go against it.
@@ -260,8 +278,11 @@ def test_a_ball_begins_to_roll_down_where_friction_does_not_hold_it(slope, rolls
     size = math.hypot(slope, 1.0)
     n, down = np.array([slope, 0.0, 1.0]) / size, np.array([1.0, 0.0, -slope]) / size
     omega = np.cross(n, down) * rolls / radius + spin * n
-    force, couple, _ = on_body(one, Rotation.identity(), omega, radius * n, rolls * down,
+    turn = Rotation.from_matrix(np.column_stack((down, np.cross(n, down), n))
+                                if upright else np.eye(3))    # its third axis along the normal
+    force, couple, _ = on_body(one, turn, turn.inv().apply(omega), radius * n, rolls * down,
                                WEIGHT, np.zeros(3))
+    couple = turn.apply(couple)
     a = 5.0 / 7.0 * 9.81 / size * growth
     N = mass * 9.81 / size
     assert force @ n == near(N, rel=1e-12)
