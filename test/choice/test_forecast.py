@@ -115,6 +115,27 @@ def test_the_rounding_of_a_body_that_heat_slows_goes_with_the_angle_it_turns(rat
     assert forecast.turned_later(scene, states, 1.0) == 1.0
 
 
+def test_the_angle_of_a_body_that_heat_slows_is_counted_from_look_to_look():
+    """Between rates r and r' it turns at most at (2 sqrt(r r') + (r + r')/2)/3, in looks.
+
+    The first rate counts up to the first look, too, and each one at least as the largest later.
+    """
+    scene, n = coasting_scene(effects=[SLOWER]), runs.LOOKS
+    states = np.zeros((n, 14))
+    states[:, 7] = [7.0] + [5.0] * (n // 4 - 1) + [0.5] * (n - n // 4)
+    turned = (7.0 + (2.0 * math.sqrt(35.0) + 6.0) / 3.0 + 5.0 * (n // 4 - 2)
+              + (2.0 * math.sqrt(2.5) + 2.75) / 3.0 + 0.5 * (n - n // 4 - 1))
+    assert forecast.turned_later(scene, states, 2.0) == near(1.0 + 0.5 * n / turned, rel=1e-13)
+    # a last quarter at a third of the rate of the one before, which ended late: half of that share
+    # of a quarter is to come in all
+    late = 3 * n // 4 - 1
+    states[:, 7] = 1.0
+    states[late, 7] = 3.0
+    turned = 1.0 + 3.0 * late + (2.0 * math.sqrt(3.0) + 2.0) / 3.0 + (n - 2.0 - late)
+    assert forecast.turned_later(scene, states, 9.0) == near(
+        1.0 + 0.25 * 0.5 * n / turned, rel=1e-13)
+
+
 @pytest.mark.parametrize(('inertia', 'torque', 'rate', 'accuracy', 'horizon'), [
     # expected 2.9e-8, error 2.2e-8; 3.9e-8 beside 2.4e-7 where errors went with time
     ('[0.01, 0.010000005, 1.0e-8]', '[0, 0, 0.02]', '[0.1, 0, 0]', 1e-6, 1.0),

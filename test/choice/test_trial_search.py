@@ -225,6 +225,136 @@ def test_a_search_that_takes_too_much_work_ends(errors, patience, taken, tried, 
     assert (asked[0] == 2.0 ** -10) == (patience > 1)
 
 
+@pytest.mark.parametrize(('errors', 'taken'), [
+    # shares of the accuracy; a tenth to a half of it is taken
+    ([0.15], 0), ([0.45], 0), ([0.55, 0.2], 1),
+    # hardly less with a finer tolerance: rounding that the motion magnifies; the coarser one does
+    ([10.0, 9.0, 8.5], 0), ([10.0, 6.0, 5.5], 1),
+    # what is asked is met, if only just
+    ([1.5, 1.0], 1)])
+def test_a_search_ends_where_finer_tolerances_help_no_more(errors, taken, tried, monkeypatch):
+    asked, left = [], iter(errors)
+    monkeypatch.setattr(tried, '_error', lambda one: asked.append(one) or next(left) * 1e-11)
+    monkeypatch.setattr(tried, '_rounding', lambda one: 0.0)
+    assert tried.tolerance_from(HERE) == asked[taken]
+    assert len(asked) == len(errors)
+
+
+def test_a_search_ends_at_the_finest_tolerance(tried, monkeypatch):
+    tried._finest, asked = 2.0 * HERE, []
+    monkeypatch.setattr(tried, '_error', lambda one: asked.append(one) or 0.1)
+    monkeypatch.setattr(tried, '_rounding', lambda one: 0.0)
+    assert [tried.tolerance_from(HERE)] == asked == [2.0 * HERE]
+
+
+@pytest.mark.parametrize(('promised', 'told'), [
+    (1e-11, (1e-11, 6.0)), (1.1e-11, (1.1e-11, 0.0)), (None, (None, None))])
+def test_where_no_run_tells_an_error_it_is_what_the_table_promises(promised, told, tried,
+                                                                   monkeypatch):
+    """There is no finer run to compare with, and beside the coarsest one no coarser one."""
+    tried._promised = promised
+    monkeypatch.setattr(tried, '_states', lambda tolerance: at(tolerance))
+    monkeypatch.setattr(tried, '_reference', lambda _: None)
+    assert tried.forecast(2.0 ** -10) == told
+    assert tried._errors(2.0 ** -10, 2.0 ** -11) == near([2.0 ** -11] * runs.LOOKS, rel=1e-9)
+
+
+@pytest.mark.parametrize(('more', 'fails', 'ends'), [
+    (10.0, False, [600.0]), (10.1, False, []), (10.0, True, [600.0, 6.0])])
+def test_a_trial_goes_on_to_the_horizon_where_heat_lets_the_body_turn_little(
+        more, fails, ends, tried, monkeypatch):
+    """Up to ten times the angle; where rest takes too many steps it ends where it would have."""
+    tried._horizon, begun = 600.0, []
+
+    def states(tolerance):
+        if fails and begun:
+            raise TooMuchWork('too many steps')
+    monkeypatch.setattr(tried, '_states', states)
+    monkeypatch.setattr(trial.forecast, 'turned_later', lambda *_: more)
+    monkeypatch.setattr(tried, '_begin', lambda *settings: begun.append(settings))
+    tried._go_on(6.0, 4.0)
+    assert begun == [(end, more * 4.0 if end == 600.0 else 4.0) for end in ends]
+
+
+@pytest.mark.parametrize(('error', 'least', 'lost', 'expected'), [
+    (None, math.inf, 0.0, math.inf), (1e-11, math.inf, 0.0, 0.0), (2e-11, 2e-11, 1.0, 2e-11),
+    # a tenth of what runs differ by, here 1e-10
+    (2e-11, math.inf, 0.9e-11, 2e-11), (2e-11, math.inf, 1.1e-11, 0.0),
+    (2e-11, 2.1e-11, 1.1e-11, 0.0), (2e-11, math.inf, None, 0.0)])
+def test_another_method_may_do_better_where_rounding_does_not_excuse_an_error(
+        error, least, lost, expected, tried, monkeypatch):
+    growing = np.linspace(0.5, 1.0, runs.LOOKS)
+
+    def rounded(scene, prototype, times, states, enough):
+        assert enough == near(1e-11, rel=1e-15)
+        if lost is None:
+            raise TooMuchWork('too many steps')
+        return lost * growing
+    monkeypatch.setattr(tried, '_error', lambda _: error)
+    monkeypatch.setattr(tried, '_reference', lambda _: HERE / 128.0)
+    monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
+    monkeypatch.setattr(tried, '_apart', lambda *_: 1e-10 * growing)
+    monkeypatch.setattr(trial.rounding, 'lost', rounded)
+    assert tried.excess(HERE, least) == 0.0    # it was not tried
+    tried._runs = {HERE: at(0.0)}
+    assert tried.excess(HERE, least) == expected
+
+
+@pytest.mark.parametrize(('begin', 'taken'), [
+    # four that are finer; two at least, be they coarser than a quarter
+    (HERE / 128.0, [-7, -6, -5, -4]), (HERE / 32.0, [-5, -4, -3, -2]), (HERE / 4.0, [-2, -1]),
+    # those that take the steps of the run itself do not count, nor those that take too much work
+    (HERE / 2.0, [-1, 1]), (4.0 * HERE, [2, 3]), (8.0 * HERE, [3]),
+    (HERE / 1024.0, [-7, -6, -5, -4])])
+def test_a_mean_is_of_four_finer_runs_or_of_two_about_as_fine(begin, taken, tried, monkeypatch):
+    def states(tolerance):
+        if tolerance < HERE / 128.0:
+            raise TooMuchWork('too many steps')
+        return at(tolerance)
+    monkeypatch.setattr(tried, '_states', states)
+    found = tried._around(begin, HERE)
+    assert [one[0, 3] for one in found] == [at(HERE * 2.0 ** k)[0, 3] for k in taken]
+
+
+def test_a_run_that_begins_later_has_the_first_state_of_a_finer_one(tried, monkeypatch):
+    tried._scene, begun = coasting_scene(), np.linspace(0.0, 1.0, runs.LOOKS)
+    states, able = at(0.0), True
+    states[:, 0] = tried._times
+
+    def run(scene, prototype, start, times, over):
+        if not able:
+            raise TooMuchWork('too many steps')
+        assert start[0] == over == tried._times[0]
+        assert prototype.accuracy == HERE / 4.0
+        return np.array([at(turned)[0] for turned in begun])
+    monkeypatch.setattr(tried, '_states', lambda _: states)
+    monkeypatch.setattr(runs, 'run', run)
+    assert tried._beside_one_begun_later(HERE, HERE / 4.0) == near(begun, rel=1e-12)
+    able = False
+    assert tried._beside_one_begun_later(HERE, HERE / 4.0).tolist() == [0.0] * runs.LOOKS
+
+
+@pytest.mark.parametrize(('shares', 'told'), [(3.9, 1.0), (4.1, 4.1), (math.inf, 1.0)])
+@pytest.mark.parametrize('finer', [None, HERE / 128.0])
+def test_a_run_begun_later_tells_where_it_is_more_than_four_times_as_far(
+        shares, told, finer, tried, monkeypatch):
+    """Finer runs may share its rounding. What rounding does is asked of the finest run."""
+    tried._scene, tried._longer, asked = coasting_scene(), 1.0, []
+    growing = np.linspace(0.5, 1.0, runs.LOOKS)
+    monkeypatch.setattr(tried, '_reference', lambda _: finer)
+    monkeypatch.setattr(tried, '_below', lambda *_: finer)
+    monkeypatch.setattr(tried, '_states', lambda tolerance: at(0.0, tolerance))
+    monkeypatch.setattr(tried, '_errors', lambda *_: 1e-10 * growing)
+    monkeypatch.setattr(tried, '_around', lambda *_: [])
+    monkeypatch.setattr(tried, '_beside_one_begun_later', lambda *settings: (
+        asked.append(settings), shares * 1e-10 * growing)[1])
+    monkeypatch.setattr(trial.rounding, 'lost', lambda scene, prototype, times, states: (
+        asked.append(states[0, 7]), 1e-12 * growing)[1])
+    monkeypatch.setattr(trial.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
+    assert tried.forecast(HERE).error == near(told * 1e-10, rel=1e-12)
+    assert asked == [finer or HERE, (HERE, finer or HERE)]
+
+
 @pytest.mark.parametrize('ran', [False, True])
 def test_where_all_that_was_tried_is_bad_the_finest_that_ran_is_taken(ran, tried, monkeypatch):
     """The next one may have run beside one that was tried, to tell its error."""
@@ -333,6 +463,10 @@ def test_a_finer_run_that_differs_by_less_than_its_own_error_is_not_enough(tried
     monkeypatch.setattr(tried, '_states', lambda tolerance: at(turned.get(tolerance, 0.0)))
     assert tried._below(HERE / 128.0, HERE) == HERE / 2.0 ** 14
     turned[HERE / 128.0] = HERE / 127.0
+    assert tried._below(HERE / 128.0, HERE) == HERE / 128.0
+    states = at(0.0)    # the largest difference counts
+    states[-1] = at(HERE / 127.0)[-1]
+    monkeypatch.setattr(tried, '_states', lambda one: at(0.0) if one == HERE else states)
     assert tried._below(HERE / 128.0, HERE) == HERE / 128.0
 
 
