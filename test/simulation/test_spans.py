@@ -72,7 +72,8 @@ class Steady:
 
 
 @pytest.mark.parametrize('whole', [
-    [0.0, 1.9, 2.0, 3.0, 4.5, 9.0], [9.0, 2.0, 0.5, 4.5, 2.0], [2.0], [4.4], [4.5], [], [1.0]])
+    [0.0, 1.9, 2.0, 3.0, 4.5, 9.0], [9.0, 2.0, 0.5, 4.5, 2.0], [4.5, 2.0], [2.0], [4.4], [4.5],
+    [], [1.0]])
 def test_a_state_is_that_of_the_last_span_that_has_begun(whole):
     """A span begins at its very time, and two may begin at one: then the later one holds."""
     spans = [Span(time, Steady(number), f'held {number}', (), None, None)
