@@ -155,7 +155,7 @@ def of_bodies(scene, many, starts, time):
     found = of_starts(scene, starts, time)
     if not measured.makes_heat(scene):
         return found
-    for begin in np.unique(starts[:, TIME]):
+    for begin in np.unique(starts[starts[:, TIME] < time, TIME]):
         bodies = np.flatnonzero(starts[:, TIME] == begin)
         for k in range(0, len(bodies), BLOCK):
             part = bodies[k:k + BLOCK]

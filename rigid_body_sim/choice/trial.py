@@ -25,7 +25,7 @@ from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.numerics.functions import log, power
+from rigid_body_sim.numerics.functions import hypot3, log, power
 
 RADIANS = 2e4
 """Largest angle that a trial run turns over, rad: some 10 ms."""
@@ -476,5 +476,5 @@ def _span(changes, rate, acceleration, onset=0.0):
 
 def _time(angle, rate, acceleration):
     """Return the time (s) in which a body that accelerates turns by an angle (rad)."""
-    fast = rate + math.sqrt(rate * rate + 2.0 * acceleration * angle)
+    fast = rate + hypot3(rate, math.sqrt(2.0 * acceleration * angle), 0.0)
     return 2.0 * angle / fast if fast else math.inf

@@ -94,6 +94,13 @@ def test_bodies_that_drag_stops_round_what_each_turns_from_its_own_time():
     assert found == near(1e-3 * rates[:2], rel=1e-2)
 
 
+def test_bodies_that_start_when_all_is_over_do_not_run_back():
+    one = parse_scene(SLOWED.replace('RATE', '1'))
+    starts = np.ones((2, 14))
+    assert rounding.of_bodies(one, None, starts, 1.0).tolist() == \
+        rounding.of_starts(one, starts, 1.0).tolist()
+
+
 def test_bodies_that_nothing_slows_do_not_run_for_their_rounding():
     one, starts = coasting_scene(), np.ones((2, 14))
     found = rounding.of_bodies(one, None, starts, 8.0)

@@ -37,7 +37,7 @@ def at(angle, rate=3.0, velocity=0.0):
     return states
 
 
-@pytest.mark.parametrize(('rate', 'push'), [(3.0, 0.0), (0.0, 0.5), (3.0, 0.5)])
+@pytest.mark.parametrize(('rate', 'push'), [(3.0, 0.0), (0.0, 0.5), (3.0, 0.5), (1e200, 0.0)])
 def test_a_trial_is_as_long_as_it_takes_to_turn_by_its_angle(rate, push):
     time = trial._span([0.0], rate, push)
     assert rate * time + 0.5 * push * time * time == near(trial.RADIANS, rel=1e-12)
