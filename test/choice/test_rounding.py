@@ -94,6 +94,52 @@ def test_bodies_that_drag_stops_round_what_each_turns_from_its_own_time():
     assert found == near(1e-3 * rates[:2], rel=1e-2)
 
 
+@pytest.mark.parametrize(('rate', 'time', 'times'), [
+    (40.0, 1.0, [0.0, *(2.0 ** -n for n in range(6, 0, -1))]), (2.0, 1.0, [0.0, 0.5]),
+    (0.0, 8.0, [0.0, 4.0])])
+def test_a_slowing_body_is_looked_at_in_each_half_of_the_time_before(rate, time, times):
+    """The first of the times lies within the first radian."""
+    assert rounding._early(rate, time).tolist() == times
+
+
+@pytest.mark.parametrize(('share', 'drag', 'again'), [
+    (0.5, True, False), (0.49, True, True), (0.49, False, False)])
+def test_a_run_is_made_again_where_heat_halves_the_rate_by_the_first_look(share, drag, again,
+                                                                          monkeypatch):
+    one = parse_scene(SLOWED.replace('RATE', '2.0')) if drag else coasting_scene()
+    first, states, asked = one.initial.angular_velocity[2], np.zeros((4, 14)), []
+    states[:, 7] = share * first
+    early = np.zeros((2, 14))
+    early[:, 7] = share * first
+    monkeypatch.setattr(rounding, '_early', lambda *given: asked.append(given) or
+                        np.array([0.0, 0.25, 0.5]))
+    monkeypatch.setattr(rounding, 'run', lambda scene, prototype, start, times: early)
+    found = rounding.of_angle_turned(one, None, states, TIMES)
+    until = 0.25 if again else 1.0
+    turned = mean(first, share * first) * until + share * first * (TIMES - until)
+    assert found == near(HALF_ULP * ((8.0 if drag else 4.0) + turned), rel=1e-14)
+    assert asked == [(first, 1.0)] * again
+
+
+def test_bodies_that_a_torque_speeds_up_count_what_it_adds_twice():
+    """Each turns at 1.5 times its first rate, as fast as at twice that; or at the bound."""
+    one = parse_scene(SLOWED.replace('RATE', '1').replace(
+        'effects: [', 'effects: [torque: {value: [0, 0, 50], frame: body}, '))
+    starts, asked = np.zeros((600, 14)), []
+    starts[:, 7] = rates = np.arange(1.0, 601.0)
+
+    def many(starts, times, out):
+        asked.append((len(starts), times.tolist()))
+        out[:, :, 7] = 1.5 * starts[:, None, 7]
+    found = rounding.of_bodies(one, many, starts, 4.0) / HALF_ULP - 8.0
+    # 50 N m on 2.5 kg m^2 turn by 160 rad in 4 s at most
+    assert found == near(np.minimum(2.0 * rates * 4.0, rates * 4.0 + 160.0), rel=1e-12)
+    assert [count for count, _ in asked] == [256, 256, 88]
+    for (_, times), fastest in zip(asked, (256.0, 512.0, 600.0), strict=True):
+        assert times[0] == 0.0 and times[-64:] == runs.looks(4.0).tolist()
+        assert 0.5 < fastest * times[1] <= 1.0
+
+
 def test_bodies_that_start_when_all_is_over_do_not_run_back():
     one = parse_scene(SLOWED.replace('RATE', '1'))
     starts = np.ones((2, 14))
@@ -246,7 +292,7 @@ def test_a_start_is_moved_by_half_ulps_of_its_numbers():
     hinged = parse_scene('scene: s\nbody: {mass: 2, inertia: [1, 2, 2.5]}\n'
                          'constraint: {hinge: {axis: [1, 2, 2]}}\neffects: []\n'
                          'initial: {rate: 3}\n')
-    moved = rounding._moved(hinged, hinged.initial.vector, (1,) * 7, 2.0 ** 20)
+    moved = rounding._moved(hinged, hinged.initial.vector, (1, 1, 1, 1, 1, -1, -1), 2.0 ** 20)
     assert moved[5:8] == near(hinged.initial.vector[5:8] * (1.0 + by), rel=1e-15)
 
 
