@@ -8,8 +8,7 @@ import numpy as np
 
 from rigid_body_sim.choice.comparison import lengths
 from rigid_body_sim.choice.measured import makes_heat
-from rigid_body_sim.choice.rounding import angles_turned
-from rigid_body_sim.mechanics.bounds import drive, unbounded
+from rigid_body_sim.mechanics.bounds import angles_turned, drive, unbounded
 from rigid_body_sim.numerics.functions import log, power
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 

@@ -17,8 +17,7 @@ from rigid_body_sim.choice import measured
 from rigid_body_sim.choice.comparison import apart, lengths
 from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.choice.runs import looks, run
-from rigid_body_sim.compilation.jit import compiled
-from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.bounds import angles_turned, drive, swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import matrix, normalised
 from rigid_body_sim.numerics.vectors import apply, transposed
@@ -93,32 +92,6 @@ def _turned(scene, many, starts, time):
 def _numbers(scene):
     """Return how many rounded numbers of size 1 an attitude has."""
     return 4.0 if scene.constraint.axis is None else 8.0
-
-
-@compiled
-def angles_turned(times, rates, first, out):
-    """Fill out with bounds of the angles (rad) that a body turns up to times, shape (n,).
-
-    Until each time it counts as turning at its largest rate from then on. Where a rate decays from
-    r to r' in proportion to itself, its mean is (r - r')/ln(r/r'), the logarithmic mean, which is
-    at most (2 sqrt(r r') + (r + r')/2)/3 (Carlson, The logarithmic mean, Amer. Math. Monthly 79,
-    1972); of one that ends at 0 in between a sixth of r counts.
-
-    Parameters
-    ----------
-    times, rates : array (n,)
-        s, from the start on; rad/s.
-    first : float
-        Rates beyond this one (rad/s) count twice.
-    """
-    for k in range(len(out)):
-        fastest, out[k] = rates[k], 0.0
-        for j in range(k - 1, -1, -1):
-            later = fastest
-            if not rates[j] <= fastest:    # not a number, too
-                fastest = rates[j]
-            mean = (2.0 * math.sqrt(later * fastest) + 0.5 * (later + fastest)) / 3.0
-            out[k] += (mean + max(0.0, mean - first)) * (times[j + 1] - times[j])
 
 
 def of_starts(scene, starts, time):
