@@ -408,3 +408,16 @@ def test_what_acts_without_striking_is_run_by_its_solver_alone(monkeypatch):
     for time, state in zip([0.5, 2.0], expected, strict=True):
         run.to(time)
         assert (exact.name, run.state().tolist()) == ('exact', state.tolist())
+
+
+@pytest.mark.parametrize(('time', 'struck'), [(0.5, True), (0.0, False)])
+def test_strikes_on_the_way_are_applied_by_simulations(time, struck, monkeypatch):
+    """So it is though something else acts, too; one at the start leaves a motion to follow."""
+    scene = parse_scene('scene: s\nbody: {mass: 1, inertia: [1, 2, 2.5]}\nconstraint: free\n'
+                        'effects: [drag: {linear: 0, angular: 0.1}, strike: {impulse: [1, 0, 0], '
+                        f'point: [0, 1, 0], time: {time}}}]\n'
+                        'initial: {angular_velocity: [1, 2, 3]}\n')
+    problem = types.SimpleNamespace(scene=scene, duration=1.0)
+    monkeypatch.setattr(runner, '_struck_run', lambda *given: given)
+    found = runner._our_run(problem, 'dop8', {'accuracy': 1e-6})
+    assert (found == (scene, 'dop8', {'accuracy': 1e-6})) == struck
