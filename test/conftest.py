@@ -19,6 +19,7 @@ from soak import SOAK
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 TEST = pathlib.Path(__file__).resolve().parent
+TEMPORARY = tempfile.gettempdir()
 os.environ.update(ros.SETTINGS | ros.PROFILE)
 # numba makes millions of small objects while it compiles, and keeps most of them: looking for
 # circles among them every 700 objects takes a tenth of its time
@@ -158,7 +159,8 @@ def _run_without_numba(names, config):
     """Run tests in a process that does not compile; return as `_without_numba` does."""
     # it is no worker, and has folders of its own
     environment = {key: value for key, value in os.environ.items() if 'XDIST' not in key}
-    with tempfile.TemporaryDirectory() as folder:
+    # the test that asks may have changed what tempfile answers
+    with tempfile.TemporaryDirectory(dir=TEMPORARY) as folder:
         outcomes = pathlib.Path(folder) / 'outcomes'
         outcomes.touch()
         # the plugins of other packages take a second to import
