@@ -2,11 +2,11 @@
 """Random scenes of the whole scene language: YAML text and duration by seed and number."""
 
 import json
-import math
-import random
 import re
 
 import numpy as np
+
+from random_scenes.chance import Chance
 
 TURNS = 60.0             # rad/s times s, at most: the truth takes a second for each hundred
 KINKED_TURNS = 4.0       # with kinks, which are located for each copy of the start
@@ -15,14 +15,8 @@ CONSTRAINTS = 'free', 'pivot', 'hinge', 'table'
 
 def drawn(number, seed):
     """Return (YAML text, duration in s) of a random scene."""
-    chance = random.Random(f'{seed} {number}')
-
-    def between(low, high):
-        return math.exp(chance.uniform(math.log(low), math.log(high)))
-
-    def vector(size):
-        v = np.array([chance.gauss(0.0, 1.0) for _ in range(3)])
-        return [float(x) for x in v / np.linalg.norm(v) * size]
+    chance = Chance(f'{seed} {number}')
+    between, vector = chance.between, chance.vector
     constraint = chance.choices(CONSTRAINTS, (4, 4, 2, 1))[0]
     mass, size = between(0.01, 10.0), between(0.02, 2.0)
     if constraint == 'table':
@@ -72,7 +66,7 @@ def drawn(number, seed):
         effects.append(f'strike: {{impulse: {impulse}, point: {point}, '
                        f'time: {chance.uniform(0.0, duration)!r}, '
                        f'frame: {chance.choice(("body", "world"))}}}')
-    more = random.Random(f'{seed} {number} more')
+    more = Chance(f'{seed} {number} more')
     if more.random() < 0.4:
         slim = shape in ('slim', 'flat')    # too fast to be followed from kink to kink
         duration = _more(more, effects, constraint, parameters, (least, mass, slim),
@@ -143,13 +137,7 @@ def _more(chance, effects, constraint, parameters, body, lasting):
     Return the duration, which is shorter where there are kinks.
     """
     (least, mass, slim), (spin, duration) = body, lasting
-
-    def between(low, high):
-        return math.exp(chance.uniform(math.log(low), math.log(high)))
-
-    def vector(size):
-        v = np.array([chance.gauss(0.0, 1.0) for _ in range(3)])
-        return [float(x) for x in v / np.linalg.norm(v) * size]
+    between, vector = chance.between, chance.vector
 
     def matrix(size):
         a = np.array([vector(1.0) for _ in range(3)])

@@ -9,10 +9,10 @@ of expressions are parameters.
 
 import json
 import math
-import random
 
 import numpy as np
 
+from random_scenes.chance import Chance
 from random_scenes.draw import ENERGIES, FIELDS, FORCES, GROUND, KINKED_TURNS, KINKS, TORQUES
 
 TURNS = 12.0    # rad/s times s, at most
@@ -34,14 +34,14 @@ ON_A_HINGE = {
 
 def drawn(number, seed):
     """Return (YAML text, duration in s) of a random scene."""
-    return _Scene(random.Random(f'{seed} {number} new language')).drawn(number)
+    return _Scene(Chance(f'{seed} {number} new language')).drawn(number)
 
 
 class _Scene:
     """One scene, drawn piece by piece."""
 
     def __init__(self, chance):
-        self.chance = chance
+        self.chance, self.between, self.vector = chance, chance.between, chance.vector
         self.constraint = chance.choices([*CONSTRAINTS], [*CONSTRAINTS.values()])[0]
         self.mass, self.size = self.between(0.01, 10.0), self.between(0.02, 2.0)
         self.slim = chance.random() < 0.15
@@ -61,15 +61,6 @@ class _Scene:
             'd': size * self.between(0.01, 0.3),
             'f': self.mass * size * spin * spin * self.between(1e-3, 0.1),
             'T': self.least * spin * spin * self.between(1e-3, 0.1)}
-
-    def between(self, low, high):
-        """Return a number whose logarithm is equally likely everywhere."""
-        return math.exp(self.chance.uniform(math.log(low), math.log(high)))
-
-    def vector(self, size):
-        """Return a vector of a length, in any direction."""
-        v = np.array([self.chance.gauss(0.0, 1.0) for _ in range(3)])
-        return [float(x) for x in v / np.linalg.norm(v) * size]
 
     def matrix(self, size):
         """Return a symmetric matrix that takes energy from every motion."""

@@ -3,9 +3,10 @@
 
 import json
 import math
-import random
 
 import numpy as np
+
+from random_scenes.chance import Chance
 
 SURFACES = 'sphere', 'ellipsoid', 'torus', 'disk'
 LASTS = 4.0, 25.0        # times of a fall by the size of the body, s over s
@@ -13,27 +14,6 @@ G = 9.81
 IN_WORDS = ("torque: {value: ['-k*T*wx/w0', '0.3*T*sin(w0*t)', 0], frame: body}",
             "force: {value: ['0.1*f*cos(w0*t)', 0, '0.05*f*sin(k*t)'], frame: world}",
             "potential: {energy: '0.02*f/s*(x^2 + k*y^2)'}")
-
-
-class Chance(random.Random):
-    """Random numbers and vectors."""
-
-    def between(self, low, high):
-        """Return a number whose logarithm is uniform."""
-        return math.exp(self.uniform(math.log(low), math.log(high)))
-
-    def vector(self, size):
-        """Return a vector of that length in any direction, a list."""
-        v = np.array([self.gauss(0.0, 1.0) for _ in range(3)])
-        return [float(x) for x in v / np.linalg.norm(v) * size]
-
-    def turn(self):
-        """Return a rotation matrix."""
-        q = np.array([self.gauss(0.0, 1.0) for _ in range(4)])
-        x, y, z, s = q / np.linalg.norm(q)
-        return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - s * z), 2 * (x * z + s * y)],
-                         [2 * (x * y + s * z), 1 - 2 * (x * x + z * z), 2 * (y * z - s * x)],
-                         [2 * (x * z - s * y), 2 * (y * z + s * x), 1 - 2 * (x * x + y * y)]])
 
 
 def drawn(number, seed, slim=False):

@@ -2,10 +2,10 @@
 """Random scenes of bodies that drag or dry friction brings to rest, long before they end."""
 
 import json
-import math
-import random
 
 import numpy as np
+
+from random_scenes.chance import Chance
 
 TURNS = 60.0    # rad, about: what a body turns until it is slow
 CONSTRAINTS = {'free': 4, 'pivot': 3, 'hinge': 3}
@@ -15,14 +15,8 @@ SLOWERS = ('number', 'number', 'matrix', 'square', 'dry')
 
 def drawn(number, seed):
     """Return (YAML text, duration in s) of a random scene."""
-    chance = random.Random(f'{seed} {number} slowing')
-
-    def between(low, high):
-        return math.exp(chance.uniform(math.log(low), math.log(high)))
-
-    def vector(size):
-        v = np.array([chance.gauss(0.0, 1.0) for _ in range(3)])
-        return [float(x) for x in v / np.linalg.norm(v) * size]
+    chance = Chance(f'{seed} {number} slowing')
+    between, vector = chance.between, chance.vector
     constraint = chance.choices([*CONSTRAINTS], [*CONSTRAINTS.values()])[0]
     mass, size, spin = between(0.01, 10.0), between(0.02, 2.0), between(0.1, 100.0)
     a, b, c = (chance.uniform(0.2, 1.0) for _ in range(3))
