@@ -19,22 +19,18 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.choice import comparison, forecast, measured, rounding, runs
+from rigid_body_sim.choice import comparison, forecast, measured, rounding, runs, trial_time
 from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
-from rigid_body_sim.numerics.functions import hypot3, log, power
+from rigid_body_sim.numerics.functions import log, power
 
-RADIANS = 2e4
-"""Largest angle that a trial run turns over, rad: some 10 ms."""
-LONGER = 10.0   # times that: up to there a trial goes on to a strike, or until heat slows a body
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
 FEW = 4    # looks of a part of a run that tell how it goes on
-SEEN = 1.25    # times the time of the last change: so far a trial goes at least
 LEAST, MOST, AIM = 0.1, 0.5, 0.22     # shares of the accuracy: errors that are taken; the aim
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
 SATURATED = 0.3     # rad: two runs that far apart do not tell how errors go with the tolerance
@@ -79,8 +75,9 @@ class Trial:
         self._coarsest = max(known)
         self.prototype = Stepped(scene, method, self._coarsest, horizon=horizon)
         pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
-        self._changes = _changes(scene, horizon)
-        time = min(horizon, _span(self._changes, pace, push, _onset(scene)))
+        self._changes = trial_time.changes(scene, horizon)
+        time = min(horizon, trial_time.trial_time(
+            self._changes, pace, push, trial_time.onset(scene)))
         radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
         self._begin(time, radians)
         if time < horizon and measured.makes_heat(scene):
@@ -91,7 +88,7 @@ class Trial:
         self._longer, self._times = self._horizon / time, runs.looks(time)
         self._radians = radians
         self._most = self._patience * (1 if self._others else ALONE) * (STEPS + int(
-            min(STEPS_PER_RADIAN * radians, LONGER * STEPS_PER_RADIAN * RADIANS)))
+            STEPS_PER_RADIAN * min(radians, trial_time.LONGER * trial_time.RADIANS)))
         self._runs, self._momenta = {}, {}
         self._beyond = {}     # what a run that took too much work said
         self._allowed = []    # (tolerance, error, since): what runs allowed themselves
@@ -101,7 +98,7 @@ class Trial:
         with contextlib.suppress(TooMuchWork):
             slowing = self._states(self._coarsest)
             more = forecast.turned_later(self._scene, slowing, self._longer)
-            if more > LONGER:
+            if more > trial_time.LONGER:
                 return
             self._begin(self._horizon, more * radians)
             try:
@@ -412,9 +409,9 @@ class Trial:
         Its part since the last change tells it, too: what acts then goes on.
         """
         last, since = forecast.later(self._scene, states, errors, self._longer), self._changes[-1]
-        part = self._times > since
         if since == 0.0 or self._longer == 1.0 or self._sees_no_end:
             return last    # no more is known
+        part = self._times > since
         longer = (self._horizon - since) / (float(self._times[-1]) - since)
         return max(last, forecast.later(self._scene, states[part], errors[part], longer))
 
@@ -442,39 +439,3 @@ def _flies(scene):
     return frame.pushed and any(
         one.gives == 'force' for effect in scene.effects if effect.acting is not None
         for one in effect.acting(frame, 0.0))
-
-
-def _changes(scene, horizon):
-    """Return the times (s) before the horizon at which strikes are or torques jump; at least 0."""
-    times = [strike.time for strike in scene.strikes]
-    times += [time for effect in scene.acting for time in effect.breakpoints]
-    return [0.0, *sorted(time for time in times if 0.0 < time < horizon)]
-
-
-def _onset(scene):
-    """Return the time (s) from which on something drives the body."""
-    return min((effect.breakpoints[0] if effect.breakpoints else 0.0
-                for effect in scene.acting
-                if effect.bounds and effect.bounds(scene.body, scene.constraint).torque > 0.0),
-               default=0.0)
-
-
-def _span(changes, rate, acceleration, onset=0.0):
-    """Return the length of a trial, s: until the body could have turned by RADIANS.
-
-    It goes on to the last of the changes (s), and then for that angle again, and to SEEN times
-    that, unless it takes LONGER times the angle. The body accelerates from the onset (s) on.
-    """
-    most = LONGER * RADIANS
-    if rate * onset < most:
-        most = onset + _time(most - rate * onset, rate, acceleration)
-    else:
-        most /= rate
-    last = changes[-1]
-    return min(max(last + _time(RADIANS, rate, acceleration), SEEN * last), most)
-
-
-def _time(angle, rate, acceleration):
-    """Return the time (s) in which a body that accelerates turns by an angle (rad)."""
-    fast = rate + hypot3(rate, math.sqrt(2.0 * acceleration * angle), 0.0)
-    return 2.0 * angle / fast if fast else math.inf

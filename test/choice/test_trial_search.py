@@ -8,7 +8,7 @@ import pytest
 from choice.known_bodies import SLOW, TORQUE, coasting_scene
 from near import near
 
-from rigid_body_sim.choice import comparison, runs, trial
+from rigid_body_sim.choice import comparison, runs, trial, trial_time
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.scene.scene import parse_scene
@@ -37,61 +37,6 @@ def at(angle, rate=3.0, velocity=0.0):
     return states
 
 
-@pytest.mark.parametrize(('rate', 'push'), [(3.0, 0.0), (0.0, 0.5), (3.0, 0.5), (1e200, 0.0)])
-def test_a_trial_is_as_long_as_it_takes_to_turn_by_its_angle(rate, push):
-    time = trial._span([0.0], rate, push)
-    assert rate * time + 0.5 * push * time * time == near(trial.RADIANS, rel=1e-12)
-
-
-def test_a_body_at_rest_is_tried_to_the_horizon():
-    assert trial._span([0.0], 0.0, 0.0) == math.inf
-
-
-@pytest.mark.parametrize(('strikes', 'expected'), [
-    ([7.0, 5.0], 17.0), ([25.0, 5.0], 15.0), ([20.0], 10.0), ([70.0], 87.5), ([89.0], 100.0)])
-def test_a_trial_goes_on_behind_the_last_strike_within_the_horizon(strikes, expected):
-    """At 2000 rad/s it takes 10 s for the angle; strikes beyond ten times that are not waited for.
-
-    A strike at the horizon is not within it. A quarter more than up to a late one is tried.
-    """
-    scene = coasting_scene(*((time, 1.0) for time in sorted(strikes)))
-    horizon = 1000.0 if strikes[0] > 60.0 else 20.0
-    changes = trial._changes(scene, horizon)
-    assert changes == [0.0, *sorted(time for time in strikes if time < horizon)]
-    assert trial._span(changes, 2000.0, 0.0) == near(expected, rel=1e-12)
-
-
-PULSE = 'torque: {times: [0, 3, 8], values: [[0, 0, 1], [0, 0, 4], [0, 0, 0]], frame: body}'
-LATE = PULSE.replace('[0, 3', '[1, 3')
-
-
-@pytest.mark.parametrize(('effects', 'changes', 'onset'), [
-    ((PULSE,), [0.0, 3.0, 8.0], 0.0), ((LATE,), [0.0, 1.0, 3.0, 8.0], 1.0),
-    ((LATE, 'torque: {value: [0, 0, 1], frame: body}'),
-     [0.0, 1.0, 3.0, 8.0], 0.0),
-    # one of zero jumps nowhere
-    (('torque: {times: [2, 4], values: [[0, 0, 0], [0, 0, 0]]}',), [0.0], 0.0)])
-def test_torques_change_the_motion_where_they_jump(effects, changes, onset):
-    scene = coasting_scene(effects=effects)
-    assert trial._changes(scene, 20.0) == changes
-    assert trial._onset(scene) == onset
-
-
-@pytest.mark.parametrize(('changes', 'rate', 'push', 'onset', 'turned'), [
-    # angle up to the last change, at most; then RADIANS; up to ten times RADIANS in all
-    ([0.0, 30.0, 40.0], 1e3, 0.0, 0.0, 4e4 + 2e4), ([0.0, 30.0, 40.0], 1e3, 5.0, 30.0, None),
-    ([0.0, 500.0], 1e3, 0.0, 0.0, 2e5), ([0.0, 150.0], 1e3, 100.0, 100.0, 2e5),
-    ([0.0, 250.0], 1e3, 100.0, 250.0, 2e5)])
-def test_a_torque_that_begins_late_is_waited_for(changes, rate, push, onset, turned):
-    time = trial._span(changes, rate, push, onset)
-    after = max(0.0, time - onset)
-    if turned is None:    # 10 s after the onset, and what then takes 2e4 rad at 5 rad/s^2
-        own = time - changes[-1]
-        assert rate * own + 0.5 * push * own * own == near(trial.RADIANS, rel=1e-12)
-    else:
-        assert rate * time + 0.5 * push * after * after == near(turned, rel=1e-12)
-
-
 @pytest.mark.parametrize(('at', 'horizon', 'blind'), [
     (7.0, 100.0, False), (9.53, 100.0, False), (9.54, 100.0, True), (12.0, 100.0, True),
     (8.99, 9.0, False)])
@@ -101,7 +46,7 @@ def test_behind_the_end_of_a_trial_nobody_knows_what_a_change_does(at, horizon, 
 
     So it is unless the trial goes to the horizon.
     """
-    monkeypatch.setattr(trial, 'RADIANS', 3.0)
+    monkeypatch.setattr(trial_time, 'RADIANS', 3.0)
     one = Trial(coasting_scene((at, 1e-9)), 1e-9, horizon, 'dop8', 1e-12, 1, True)
     monkeypatch.setattr(one, 'tolerance_from', lambda tolerance: 2.0 ** -20)
     assert one._sees_no_end == blind

@@ -4,7 +4,7 @@
 import pytest
 from near import near
 
-from rigid_body_sim.choice import comparison, trial
+from rigid_body_sim.choice import comparison, trial_time
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.scene.scene import parse_scene
@@ -24,7 +24,7 @@ HORIZON = 40.0     # s: fifteen trials
 
 
 def slowing(monkeypatch, drag, radians=TRIED):
-    monkeypatch.setattr(trial, 'RADIANS', radians)
+    monkeypatch.setattr(trial_time, 'RADIANS', radians)
     scene = parse_scene(TURNING.replace('EFFECT', SLOWER.replace('DRAG', repr(drag))))
     return Trial(scene, 1e-9, HORIZON, 'dop8', 1e-12, 1, True)
 
@@ -73,7 +73,7 @@ def test_one_whose_rest_takes_too_much_work_is_tried_for_a_while(able, monkeypat
 def test_the_error_of_a_fast_body_that_rests_for_long_is_met_and_foretold(
         accuracy, horizon, inertia, monkeypatch):
     """From the first 3 s alone 3e-12 rad were told of an error of 5e-11, and 4e-7 of 7e-8."""
-    monkeypatch.setattr(trial, 'RADIANS', TRIED)
+    monkeypatch.setattr(trial_time, 'RADIANS', TRIED)
     text = TURNING.replace('EFFECT', SLOWER.replace('DRAG', '0.6'))
     error, told = beside_finer(text.replace('[1.0, 1.5, 2.0]', inertia), accuracy, horizon)
     assert error <= accuracy                     # 0.07 to 0.3 of it
@@ -89,7 +89,7 @@ def test_the_error_of_a_fast_body_that_rests_for_long_is_met_and_foretold(
 def test_the_error_under_a_torque_that_begins_late_is_met_and_foretold(accuracy, torque,
                                                                        monkeypatch):
     """Trials ended before it: errors were up to 2.5 times what was asked, and nothing told it."""
-    monkeypatch.setattr(trial, 'RADIANS', TRIED)
+    monkeypatch.setattr(trial_time, 'RADIANS', TRIED)
     error, told = beside_finer(TURNING.replace('EFFECT', f'torque: {torque}'), accuracy, 24.0)
     assert error <= accuracy                     # 0.03 to 0.3 of it
     assert error / 3.0 <= told <= 3.0 * error    # 0.7 to 2 times
