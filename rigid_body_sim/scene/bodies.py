@@ -165,7 +165,9 @@ def _summed(inertia, M, shift, sign):
     """Return the sums of the parallel-axis theorem, rows of Fractions."""
     d, mass = [Fraction(part) for part in shift], Fraction(sign * M)
     square = dot(d, d)
+    # a product by 0 takes as long as any other, and most shifts lie along an axis
     return [[entry + mass * ((square if i == j else 0) - d[i] * d[j])
+             if i == j or (d[i] and d[j]) else entry
              for j, entry in enumerate(row)] for i, row in enumerate(inertia.exact)]
 
 

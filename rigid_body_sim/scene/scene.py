@@ -44,7 +44,12 @@ Overrides = Mapping[str, Any] | Sequence[str]
 
 def scene_schema():
     """Return the schema of a scene; `initial` may have the keys of every constraint."""
-    initial = {key: schema for word in CONSTRAINTS.values() for constraint in word.variants()
+    return _schema_with(tuple(CONSTRAINTS.values()))
+
+
+@functools.lru_cache(maxsize=1)
+def _schema_with(constraints):
+    initial = {key: schema for word in constraints for constraint in word.variants()
                for key, schema in constraint.INITIAL.items()}
     return mapping_of(
         ['scene', 'body', 'constraint', 'effects', 'initial'],

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """JSON schemas of the parts of a scene file, and the check that refuses a fault in one line."""
 
+import functools
 import math
 from collections.abc import Iterable
 from typing import Any
@@ -22,6 +23,12 @@ QUATERNION: Schema = {'type': 'array', 'items': NUMBER, 'minItems': 4, 'maxItems
 INFINITE = 'sliding_friction.mu'
 """The key whose number may be infinite: the body then always rolls."""
 MATRIX: Schema = {'type': 'array', 'items': VECTOR, 'minItems': 3, 'maxItems': 3}
+
+
+OF_MAPPINGS = frozenset(
+    ('type', 'properties', 'required', 'additionalProperties', 'description', 'default'))
+"""The words of a schema of which a mapping satisfies each by what its own entries are."""
+KEPT = 512    # entries of scenes that are known to satisfy their schemas, or not to
 
 
 def mapping_of(required: Iterable[str] = (), **properties: Schema) -> Schema:
@@ -48,6 +55,8 @@ def check(value: Any, schema: Schema, where: str) -> None:
         For the first fault: file and key path, the value, what would be right.
     """
     _refuse_non_finite(value, where)
+    if _fits(value, schema):
+        return
     errors = sorted(jsonschema.Draft202012Validator(schema).iter_errors(value),
                     key=lambda error: (len(error.absolute_path), _last(error), str(error.path)))
     if not errors:
@@ -65,6 +74,42 @@ def check(value: Any, schema: Schema, where: str) -> None:
         raise BadInput(where, f'the key {missing!r} is missing',
                        f'needed: {", ".join(error.validator_value)}')
     raise BadInput(where, f'got {yaml_text.brief(error.instance)}', _remedy(error))
+
+
+def _fits(value: Any, schema: Schema) -> bool:
+    """Return whether a value satisfies a schema: each entry of a mapping does, by itself.
+
+    Loops over scenes change a number at a time: what is as it was is known.
+    """
+    if not (schema.keys() <= OF_MAPPINGS and schema.get('type') == 'object'
+            and isinstance(value, dict)):
+        return _satisfies(_Entry(value, schema))
+    known = schema.get('properties', {})
+    return (all(key in value for key in schema.get('required', ()))
+            and all(_fits(entry, known[key]) if key in known
+                    else schema.get('additionalProperties', True) is True
+                    for key, entry in value.items()))
+
+
+class _Entry:
+    """A value and its schema as the key of a cache: the same text, and the same schema object."""
+
+    __slots__ = 'schema', 'text', 'value'
+
+    def __init__(self, value: Any, schema: Schema) -> None:
+        self.value, self.schema, self.text = value, schema, repr(value)
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, _Entry) and self.schema is other.schema
+                and self.text == other.text)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _satisfies(entry: _Entry) -> bool:
+    return jsonschema.Draft202012Validator(entry.schema).is_valid(entry.value)
 
 
 def _last(error: Any) -> bool:
@@ -112,18 +157,21 @@ def at(where: str, *keys: object) -> str:
     return where if not path else f'{where}.{path}' if ': ' in where else f'{where}: {path}'
 
 
-def _refuse_non_finite(value: Any, where: str) -> None:
+def _refuse_non_finite(value: Any, where: str, *path: object) -> None:
     if isinstance(value, dict):
         for key, entry in value.items():
-            _refuse_non_finite(entry, at(where, key))
-    elif isinstance(value, list):
+            _refuse_non_finite(entry, where, *path, key)
+        return
+    if isinstance(value, list):
         for place, entry in enumerate(value):
-            _refuse_non_finite(entry, at(where, place))
-    elif isinstance(value, float) and not math.isfinite(value):
+            _refuse_non_finite(entry, where, *path, place)
+        return
+    if not isinstance(value, int | float) or -LARGEST <= value <= LARGEST:
+        return    # nan is refused: it is not between
+    where = at(where, *path)
+    if isinstance(value, float) and not math.isfinite(value):
         if value > 0.0 and where.endswith(INFINITE):
             return
         raise BadInput(where, f'got {value!r}', 'needs a finite number')
-    elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) > LARGEST:
-        raise BadInput(where, f'got {yaml_text.brief(value)}',
-                       f'needs a number from {-LARGEST:g} to {LARGEST:g}, whose products fit a '
-                       'double')
+    raise BadInput(where, f'got {yaml_text.brief(value)}',
+                   f'needs a number from {-LARGEST:g} to {LARGEST:g}, whose products fit a double')
