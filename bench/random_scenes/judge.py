@@ -9,6 +9,7 @@ import yaml
 from random_scenes.ball import BallTruth
 from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
+from random_scenes.looks import looks
 from random_scenes.new_language import MOTIONS
 from random_scenes.truth import HALF_ULP, Truth
 from random_scenes.wide import WIDE, angle
@@ -45,7 +46,7 @@ def known(scene, duration):
     """Return LOOKS times, attitudes there, the largest floor (rad), and Truth.jumped (J)."""
     truth = truth_of(scene)
     first, fastest = truth.rate, 0.0
-    times, attitudes, floors = duration * np.arange(1, LOOKS + 1) / LOOKS, [], []
+    times, attitudes, floors = looks(duration, LOOKS), [], []
     for end in times:
         truth.to(float(end))
         attitudes.append(truth.y[0, :4].astype(WIDE))

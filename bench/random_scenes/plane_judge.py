@@ -7,6 +7,7 @@ import random
 import numpy as np
 import yaml
 
+from random_scenes.looks import looks
 from random_scenes.plane_draw import drawn
 from random_scenes.plane_truth import PlaneTruth
 from random_scenes.wide import WIDE, angle
@@ -69,7 +70,7 @@ class Known:
                     until = min(until, longer[min(len(lists[0]), len(events))][1])
         self.until = until
         self.ends = self.why.startswith('end:') and until == best.known
-        self.times = duration * np.arange(1, LOOKS + 1) / LOOKS
+        self.times = looks(duration, LOOKS)
         if until < duration:
             self.times = self.times[self.times < until - 1e-6 * fall]
         self.events = [

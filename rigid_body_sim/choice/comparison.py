@@ -52,28 +52,33 @@ def momenta(scene, states):
     return out[:, DIAGNOSIS.part('momentum').places]
 
 
-def velocities_apart(states, others):
+def velocities_apart(states, others, before):
     """Return the differences of the velocities of two runs, shape (n,); infinite for NaN.
 
-    They are relative to the largest speed so far.
+    They are relative to the largest speed so far, `before` (m/s) at the start.
     """
-    return shares(states[:, VELOCITY], others[:, VELOCITY])
+    return shares(states[:, VELOCITY], others[:, VELOCITY], before)
 
 
 def rates_apart(states, others):
-    """Return the differences of the angular velocities of two runs, shape (n,), as above."""
-    return shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY])
+    """Return the differences of the angular velocities of two runs, shape (n,), as above.
+
+    They are relative to the largest rate at the looks so far.
+    """
+    return shares(states[:, ANGULAR_VELOCITY], others[:, ANGULAR_VELOCITY], 0.0)
 
 
-def shares(one, other):
+def shares(one, other, before):
     """Return the lengths of differences as shares of the largest length so far, shape (n,).
 
     Parameters
     ----------
     one, other : array (n, 3)
         Vectors of two runs. Where one is not finite the share is infinite.
+    before : float
+        The length at the start: what has come to rest has only rounding left.
     """
-    sizes, apart = np.maximum.accumulate(lengths(one)), lengths(one - other)
+    sizes, apart = np.maximum.accumulate([before, *lengths(one)])[1:], lengths(one - other)
     found = np.divide(apart, sizes, out=np.zeros(len(apart)), where=sizes > 0.0)
     return np.where(np.isfinite(apart) & np.isfinite(sizes), found, math.inf)
 

@@ -60,7 +60,8 @@ def missed(accuracy, horizon, expected, met_until):
 def later(scene, states, errors, longer):
     """Return the error (rad) at a time beyond a run, from its errors at looks.
 
-    It grows in proportion to time, as the number of steps does. Where a drive makes a body turn
+    It grows in proportion to time, as the number of steps does, or to the angle that a body turns
+    which heat slows. Where a drive makes a body turn
     ever faster, errors go with the angle that it turns, or with a power of it up to the square:
     then those of the momentum, which add up, turn the body. What the errors did in the second half
     of the run tells the power.
@@ -79,7 +80,7 @@ def later(scene, states, errors, longer):
         return last
     faster, so_far = _spin_up(scene, states)
     if faster == 0.0 or not 0.0 < last < math.inf:
-        return last * longer
+        return last * turned_later(scene, states, longer)
     first = float(errors[:len(errors) // 2].max())
     grew = log(last / first) / log(so_far) if first > 0.0 else POWERS[1]
     angle = longer * (1.0 + faster * (longer - 1.0))

@@ -65,6 +65,21 @@ def of_angle_turned(scene, prototype, states, times):
     return HALF_ULP * (_numbers(scene) + turned[len(seen):])
 
 
+def angle_turned(scene, states, times):
+    """Return a bound of the angle (rad) that a body turns in a run; NaN if the run is.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run, at rising times (s).
+    """
+    rates = np.concatenate((scene.initial.vector[None, ANGULAR_VELOCITY],
+                            states[:, ANGULAR_VELOCITY]))
+    turned = np.empty(len(rates))
+    angles_turned(np.concatenate(((0.0,), times)), lengths(rates), math.inf, turned)
+    return float(turned[-1])
+
+
 def _early(rate, time):
     """Return 0 and times (s) before one: each twice the one before, but for the first radian."""
     times = [0.5 * time]

@@ -14,11 +14,21 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE_SIZE
 
 LOOKS = 64    # times at which runs are compared
+QUARTER = LOOKS // 4
+EARLIER = 0.5    # largest part of the time between two looks by which one is earlier than evenly
+GOLDEN = 0.6180339887498949    # the golden ratio less one, whose multiples are near no fraction
 
 
 def looks(time):
-    """Return the times (s) up to one at which runs are compared, shape (LOOKS,)."""
-    return time * (np.arange(1, LOOKS + 1) / LOOKS)
+    """Return the times (s) up to one at which runs are compared, shape (LOOKS,).
+
+    A motion that repeats itself as often as even looks would be seen at the same place each time,
+    perhaps where it turns back and an error in time does not show. Each look but the last of a
+    quarter is earlier than that, by parts that never repeat.
+    """
+    k = np.arange(1, LOOKS + 1)
+    earlier = np.where(k % QUARTER, EARLIER * (k * GOLDEN % 1.0), 0.0)
+    return time * ((k - earlier) / LOOKS)
 
 
 def run(scene, prototype, vector, times, allowances=None, over=-math.inf):

@@ -15,6 +15,7 @@ body gets an eighth of the tolerance of the table, to be safe: the table has oth
 """
 
 import contextlib
+import functools
 import math
 
 import numpy as np
@@ -24,8 +25,9 @@ from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
-from rigid_body_sim.mechanics.bounds import drive
+from rigid_body_sim.mechanics.bounds import drives, pushed_unbounded
 from rigid_body_sim.numerics.functions import log, power
+from rigid_body_sim.scene.state import VELOCITY
 
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
@@ -46,6 +48,7 @@ GROWTHS = 0.5, 2.0
 FARTHEST = 2.0 ** 12    # from one tolerance tried to the next, as a factor
 ROUNDS = 0.3    # an error that falls with a lower power of the tolerance is mostly round-off
 MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
+CUT, CUTS = 0.25, 2     # share of what a run reached that is the time of the next one; runs made
 HELPS = 0.7     # a finer tolerance helps if the error falls below this share
 ROUNDED = 10.0  # times what rounding does: an error below it may be magnified rounding
 SHARED = 4.0    # times what finer runs tell: beyond, they share the rounding of the run itself
@@ -68,30 +71,57 @@ class Trial:
     def __init__(self, scene, accuracy, horizon, method, promised, patience, others):
         self._scene, self._accuracy, self._horizon = scene, accuracy, horizon
         self._promised, self._patience, self._others = promised, patience, others
+        self._times = None
         self._flies = _flies(scene)
         rows = measured.rows(scene)
         known = [entry['tolerance'] for entry in rows.get(method) or rows['dop8']]
         self._finest = max(min(known), METHODS[method].FAMILY.FINEST)
         self._coarsest = max(known)
         self.prototype = Stepped(scene, method, self._coarsest, horizon=horizon)
-        pace, push = measured.pace(scene) + runs.struck_rate(scene), drive(scene, None)
         self._changes = trial_time.changes(scene, horizon)
-        time = min(horizon, trial_time.trial_time(
-            self._changes, pace, push, trial_time.onset(scene)))
-        radians = (pace + 0.5 * push * time) * time    # by which it turns at most, about
-        self._begin(time, radians)
+        pace = measured.pace(scene) + runs.struck_rate(scene)
+        self._begin_at(pace, horizon)
+        if pushed_unbounded(scene):
+            self._begin_at(max(pace, self._pace_seen()), float(self._times[-1]))
+        time = float(self._times[-1])
         if time < horizon and measured.makes_heat(scene):
-            self._go_on(time, radians)
+            self._go_on(time, self._radians)
+
+    def _begin_at(self, pace, most):
+        """Let runs end where a body of a pace (rad/s) has turned far, at most at a time (s)."""
+        pushes = drives(self._scene)
+        time = min(most, trial_time.trial_time(self._changes, pace, pushes))
+        self._begin(time, trial_time.turned_by(time, pace, pushes))
 
     def _begin(self, time, radians):
         """Let runs end at a time (s) in which the body turns by an angle, about."""
-        self._longer, self._times = self._horizon / time, runs.looks(time)
         self._radians = radians
         self._most = self._patience * (1 if self._others else ALONE) * (STEPS + int(
             STEPS_PER_RADIAN * min(radians, trial_time.LONGER * trial_time.RADIANS)))
-        self._runs, self._momenta = {}, {}
         self._beyond = {}     # what a run that took too much work said
+        if self._times is not None and self._times[-1] == time:
+            return    # what ran stands
+        self._longer, self._times = self._horizon / time, runs.looks(time)
+        self._runs, self._momenta = {}, {}
         self._allowed = []    # (tolerance, error, since): what runs allowed themselves
+
+    def _pace_seen(self):
+        """Return the mean rate of the body in a run, rad/s, where no bounds of it are known.
+
+        Where the run takes too much work, a part of it is made, and that is the trial.
+        """
+        for _ in range(CUTS):
+            try:
+                states = self._states(self._coarsest)
+            except TooMuchWork as error:
+                part = CUT * (error.time or 0.0)
+                if part == 0.0:
+                    break
+                self._begin(part, self._radians)
+                continue
+            turned = rounding.angle_turned(self._scene, states, self._times)
+            return turned / float(self._times[-1]) if turned < math.inf else 0.0
+        return 0.0
 
     def _go_on(self, time, radians):
         """Let runs end at the horizon if heat makes the body turn little from a time (s) on."""
@@ -312,6 +342,13 @@ class Trial:
             self._momenta[tolerance] = comparison.momenta(self._scene, self._states(tolerance))
         return self._momenta[tolerance]
 
+    @functools.cached_property
+    def _at_start(self):
+        """The angular momentum (kg m^2/s) and the speed (m/s) at the start."""
+        start = self._scene.initial.vector[np.newaxis]
+        return (float(comparison.lengths(comparison.momenta(self._scene, start))[0]),
+                float(comparison.lengths(start[:, VELOCITY])[0]))
+
     def _run(self, tolerance, most):
         """Return the states of a run that takes at most so many steps."""
         found = []
@@ -398,9 +435,11 @@ class Trial:
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""
         here, best = self._states(tolerance), self._states(finer)
-        shares = comparison.shares(self._momenta_of(tolerance), self._momenta_of(finer))
+        momentum, speed = self._at_start
+        shares = comparison.shares(
+            self._momenta_of(tolerance), self._momenta_of(finer), momentum)
         if self._flies:
-            shares = np.maximum(shares, comparison.velocities_apart(here, best))
+            shares = np.maximum(shares, comparison.velocities_apart(here, best, speed))
         return np.maximum(comparison.apart(here, best), MOMENTA * shares)
 
     def _later(self, states, errors):

@@ -2,6 +2,7 @@
 """How long a trial of a scene is: to where the body has turned far, and what changes is seen."""
 
 import math
+from itertools import pairwise
 
 from rigid_body_sim.numerics.functions import hypot3
 
@@ -18,15 +19,7 @@ def changes(scene, horizon):
     return [0.0, *sorted(time for time in times if 0.0 < time < horizon)]
 
 
-def onset(scene):
-    """Return the time (s) from which on something drives the body."""
-    return min((effect.breakpoints[0] if effect.breakpoints else 0.0
-                for effect in scene.acting
-                if effect.bounds and effect.bounds(scene.body, scene.constraint).torque > 0.0),
-               default=0.0)
-
-
-def trial_time(changes, rate, acceleration, onset=0.0):
+def trial_time(changes, rate, drives):
     """Return the length of a trial, s: until the body could have turned by RADIANS.
 
     It goes on to the last change, for that angle again, and at least to SEEN times the time of the
@@ -36,21 +29,38 @@ def trial_time(changes, rate, acceleration, onset=0.0):
     ----------
     changes : list of float
         As above.
-    rate, acceleration : float
-        Bounds, rad/s and rad/s^2.
-    onset : float
-        Time from which on the body accelerates, s.
+    rate : float
+        Bound of the rate at the start, rad/s.
+    drives : list of (float, float)
+        Of the acceleration, as mechanics.bounds.drives has it.
     """
-    most = LONGER * RADIANS
-    if rate * onset < most:
-        most = onset + _time(most - rate * onset, rate, acceleration)
-    else:
-        most /= rate
-    last = changes[-1]
-    return min(max(last + _time(RADIANS, rate, acceleration), SEEN * last), most)
+    last, most = changes[-1], _reached(LONGER * RADIANS, rate, drives)
+    if not last < most:
+        return most
+    own = _reached(turned_by(last, rate, drives) + RADIANS, rate, drives)
+    return min(max(own, SEEN * last), most)
 
 
-def _time(angle, rate, acceleration):
-    """Return the time (s) in which a body that accelerates turns by an angle (rad)."""
-    fast = rate + hypot3(rate, math.sqrt(2.0 * acceleration * angle), 0.0)
-    return 2.0 * angle / fast if fast else math.inf
+def turned_by(time, rate, drives):
+    """Return the angle (rad) that a body turns at most up to a time (s)."""
+    angle = 0.0
+    for (begin, push), (end, _) in pairwise([*drives, (math.inf, 0.0)]):
+        part = min(end, time) - begin
+        if part <= 0.0:
+            break
+        angle += (rate + 0.5 * push * part) * part
+        rate += push * part
+    return angle
+
+
+def _reached(angle, rate, drives):
+    """Return the time (s) at which a body could have turned by an angle (rad)."""
+    for (begin, push), (end, _) in pairwise([*drives, (math.inf, 0.0)]):
+        fast = rate + hypot3(rate, math.sqrt(2.0 * push * angle), 0.0)
+        own = 2.0 * angle / fast if fast else math.inf
+        if own <= end - begin:
+            break
+        part = end - begin
+        angle = max(0.0, angle - (rate + 0.5 * push * part) * part)
+        rate += push * part
+    return begin + own

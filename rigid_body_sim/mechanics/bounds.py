@@ -3,6 +3,7 @@
 
 import math
 from functools import reduce
+from itertools import pairwise
 from operator import add
 
 from rigid_body_sim.compilation.jit import compiled
@@ -29,19 +30,54 @@ def swing_rate(scene):
     return 2.0 * math.sqrt(energy / across)
 
 
-def swing_momentum(scene):
-    """Return the largest angular momentum (kg m^2/s) that potentials can give a held body.
+def swing_momentum(scene, potential=0.0):
+    """Return the largest angular momentum (kg m^2/s) that potentials can give a body.
 
     Of a body on a plane it is that of a fall by its own size: friction may turn one that did not
-    turn, and bring it to rest.
+    turn, and bring it to rest. Where a potential has no bounds, it is that of a body which has all
+    of an energy as kinetic energy: sqrt(2 I U).
+
+    Parameters
+    ----------
+    potential : float
+        The size of the potential energy that the body has or had, J.
     """
-    body, constraint = scene.body, scene.constraint
-    if constraint.mechanism is Mechanism.PLANE:
+    body, moment = scene.body, _largest_moment(scene)
+    let_go = math.sqrt(2.0 * moment * potential) if _swings_unbounded(scene) else 0.0
+    if scene.constraint.mechanism is Mechanism.PLANE:
         far = max(body.surface.size)
-        return body.mass * far * math.sqrt(hypot3(*scene.field) * far)
-    moment = (max(constraint.inertia(body).moments) if constraint.axis is None
-              else moment_about_hinge(body, constraint))
-    return swing_rate(scene) * moment
+        return max(let_go, body.mass * far * math.sqrt(hypot3(*scene.field) * far))
+    return max(let_go, swing_rate(scene) * moment)
+
+
+def passed(scene, time, potential):
+    """Return the energy (J) and angular momentum (kg m^2/s) of a body on its way, about.
+
+    One that is let go, or turned by a torque and stopped by another, is at rest again in the end.
+    What torques gave until they jumped, and potentials can give, is the momentum L in between;
+    the energy is at least L^2/2I.
+
+    Parameters
+    ----------
+    time : float
+        The end, s.
+    potential : float
+        As above, J.
+    """
+    pushed = reduce(add, (
+        torque * (end - begin) for bounds in _bounds(scene)
+        for (begin, torque), (end, _) in pairwise(bounds.pieces) if end <= time), 0.0)
+    momentum = max(pushed, swing_momentum(scene, potential))
+    return 0.5 * momentum * momentum / _largest_moment(scene), momentum
+
+
+@kept
+def _largest_moment(scene):
+    """Return the largest moment of inertia about which a body turns, kg m^2."""
+    body, constraint = scene.body, scene.constraint
+    if constraint.axis is not None:
+        return moment_about_hinge(body, constraint)
+    return max(constraint.inertia(body).moments)
 
 
 def drive(scene, wrench):
@@ -54,16 +90,53 @@ def drive(scene, wrench):
     if wrench:
         lever = hypot3(*constraint.arm(body)) if constraint.holds_a_point else 0.0
         torque += hypot3(*wrench.torque) + lever * hypot3(*wrench.force)
-    if torque == 0.0:
-        return 0.0
+    return torque / _least_moment(scene) if torque > 0.0 else 0.0
+
+
+def drives(scene):
+    """Return the bound that `drive` gives as it changes in time: (time, acceleration) from 0 on.
+
+    Each acceleration (rad/s^2) holds from its time (s) to the next.
+    """
+    found = _bounds(scene)
+    times = sorted({0.0, *(time for bounds in found for time, _ in bounds.pieces)})
+    torques = [reduce(add, (_torque_at(bounds, time) for bounds in found), 0.0) for time in times]
+    moment = _least_moment(scene) if any(torques) else 1.0
+    return [(time, torque / moment) for time, torque in zip(times, torques, strict=True)]
+
+
+def _torque_at(bounds, time):
+    """Return the largest torque (N m) of a drive just after a time (s)."""
+    if not bounds.pieces:
+        return bounds.torque
+    return next((torque for begin, torque in reversed(bounds.pieces) if begin <= time), 0.0)
+
+
+def _least_moment(scene):
+    """Return the least moment of inertia about which a torque may turn the body, kg m^2."""
+    body, constraint = scene.body, scene.constraint
     if constraint.axis is not None:
-        return torque / moment_about_hinge(body, constraint)
-    return torque / min(moment for moment in constraint.inertia(body).moments if moment > 0.0)
+        return moment_about_hinge(body, constraint)
+    return min(moment for moment in constraint.inertia(body).moments if moment > 0.0)
 
 
 def unbounded(scene):
     """Return whether anything acts whose bounds are not known."""
     return any(effect.acting is not None and effect.bounds is None for effect in scene.effects)
+
+
+@kept
+def _swings_unbounded(scene):
+    """Return whether anything whose bounds are not known has a potential."""
+    return any(effect.potential is not None and effect.bounds is None for effect in scene.effects)
+
+
+@kept
+def pushed_unbounded(scene):
+    """Return whether anything pushes the body whose bounds are not known; heat only slows it."""
+    return any(one.books != 'heat' for effect in scene.effects
+               if effect.acting is not None and effect.bounds is None
+               for one in effect.acting(scene.frame, 0.0))
 
 
 def borne(scene):

@@ -48,12 +48,12 @@ def entries_size(scene):
     return ENTRIES_SIZE + (len(HEATS) if on_plane else 0)
 
 
-def balance(start, now, entries, swing=0.0):
+def balance(start, now, entries, passed=(0.0, 0.0)):
     """Return the balance of energy (J) and angular momentum (kg m^2/s), as a dict of floats.
 
     ``energy_residual`` is the remainder of the terms, relative to the largest of |kinetic|,
-    |potential|, |work|; ``momentum_residual`` is |L - L(0) - angular impulse| relative to the
-    largest of the three and `swing`.
+    |potential|, |work| and the energy passed; ``momentum_residual`` is
+    |L - L(0) - angular impulse| relative to the largest of the three and the momentum passed.
 
     Parameters
     ----------
@@ -61,18 +61,19 @@ def balance(start, now, entries, swing=0.0):
         Diagnosis.
     entries : array (5,) or longer
         The Entries from start to now, and after them the HEATS of a body on a plane.
-    swing : float
-        Angular momentum that potentials can give the body, kg m^2/s: one that is let go passes
-        through it and is at rest again where it turns back.
+    passed : tuple of 2 floats
+        Energy (J) and angular momentum (kg m^2/s) of the body on its way (bounds.passed): one that
+        is let go passes through them and is at rest again where it turns back.
     """
     causes = dict(zip(HEATS, entries[ENTRIES_SIZE:].tolist(), strict=False))
     start, now = DIAGNOSIS.load(start.tolist()), DIAGNOSIS.load(now.tolist())
     work, dissipated, impulse = ENTRIES.load(entries.tolist())
     left = math.fsum((now.kinetic, now.potential, dissipated,
                       -start.kinetic, -start.potential, -work))
-    scale = max(now.kinetic, abs(now.potential), abs(work), start.kinetic, abs(start.potential))
+    scale = max(now.kinetic, abs(now.potential), abs(work), start.kinetic, abs(start.potential),
+                passed[0])
     missing = hypot3(*minus(minus(now.momentum, start.momentum), impulse))
-    size = max(swing, *(hypot3(*vector) for vector in (now.momentum, start.momentum, impulse)))
+    size = max(passed[1], *(hypot3(*vector) for vector in (now.momentum, start.momentum, impulse)))
     return {'kinetic': now.kinetic, 'potential': now.potential, 'dissipated': dissipated,
             'work': work, 'energy_residual': left / scale if scale > 0.0 else 0.0,
             'angular_momentum_squared': now.momentum_squared,

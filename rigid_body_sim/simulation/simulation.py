@@ -24,7 +24,7 @@ from rigid_body_sim.choice.forecast import missed
 from rigid_body_sim.errors import BadInput, Ended, NotConverged
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
-from rigid_body_sim.mechanics.bounds import swing_momentum
+from rigid_body_sim.mechanics.bounds import passed
 from rigid_body_sim.mechanics.ledger import balance, entries_size
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene import yaml_text
@@ -739,8 +739,9 @@ class Simulation:
         It runs from the start or the last reset on; see ledger.balance.
         """
         span = self._spans[-1]
-        given = span.given + span.solver.entries(self.time)
-        return balance(self._initial, self._diagnose(), given, swing_momentum(self.scene))
+        given, now = span.given + span.solver.entries(self.time), self._diagnose()
+        potential = max(abs(float(row[energy.POTENTIAL])) for row in (self._initial, now))
+        return balance(self._initial, now, given, passed(self.scene, self.time, potential))
 
     def _diagnose(self):
         if self._diagnosed_tick != (self.tick, len(self._spans)):

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigid_body_sim.choice.rounding import of_bodies
-from rigid_body_sim.mechanics.bounds import swing_momentum
+from rigid_body_sim.mechanics.bounds import passed
+from rigid_body_sim.mechanics.energy import POTENTIAL
 from rigid_body_sim.mechanics.ledger import balance
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
@@ -204,6 +205,6 @@ def _residuals(scene, choice, starts, ends, time):
     kernels, p = energies(scene), parameters(scene)
     before, after = (diagnosis(kernels, p, np.ascontiguousarray(states))
                      for states in (starts, ends))
-    swing = swing_momentum(scene)
-    return [balance(before[k], after[k], choice.solver(start, Wrench()).entries(time), swing)
-            for k, start in enumerate(starts)]
+    potentials = np.maximum(*(np.abs(rows[:, POTENTIAL]) for rows in (before, after))).tolist()
+    return [balance(before[k], after[k], choice.solver(start, Wrench()).entries(time),
+                    passed(scene, time, potentials[k])) for k, start in enumerate(starts)]

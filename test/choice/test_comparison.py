@@ -73,14 +73,26 @@ SHARES = [0, 0, 0.01 / 0.05, 0.4 / 0.3, math.inf, 1.3, 3 / 7, 1, 1, math.inf]
 far; nothing is told before the first one that is not zero."""
 
 
+def velocities_apart(states, others):
+    return comparison.velocities_apart(states, others, 0.0)
+
+
 @pytest.mark.parametrize(('apart', 'places'), [
-    (comparison.velocities_apart, VELOCITY), (comparison.rates_apart, ANGULAR_VELOCITY)])
+    (velocities_apart, VELOCITY), (comparison.rates_apart, ANGULAR_VELOCITY)])
 @pytest.mark.parametrize('turn', [0, 1, 2])
 @pytest.mark.filterwarnings('error')
 def test_vectors_are_apart_by_shares_of_the_largest_so_far(apart, places, turn):
     states, others = np.full((2, len(ONE), 14), 5.0)
     states[:, places], others[:, places] = np.roll(ONE, turn, axis=1), np.roll(OTHER, turn, axis=1)
     assert apart(states, others) == near(SHARES, rel=2e-15)    # worst measured: 2.3e-16
+
+
+def test_what_came_to_rest_before_the_first_look_is_apart_by_shares_of_the_start():
+    """3e-17 and 4e-17 of what was 2; a look with more than that counts from then on."""
+    states, others = np.zeros((2, 3, 14))
+    states[:, VELOCITY.start], others[:, VELOCITY.start] = [1e-17, 4.0, 0.0], [4e-17, 5.0, 1.0]
+    assert comparison.velocities_apart(states, others, 2.0) == near(
+        [1.5e-17, 0.25, 0.25], rel=1e-15)
 
 
 def test_momenta_are_apart_by_what_the_moments_make_of_the_rates():
@@ -90,6 +102,7 @@ def test_momenta_are_apart_by_what_the_moments_make_of_the_rates():
     states[:, ANGULAR_VELOCITY] = [[2, 1, 1], [1, 0, 0], [1, 3, 2]]
     others[:, ANGULAR_VELOCITY] = [[2, 1, 0], [1, 0.5, 0], [0, 4, 2]]
     scene = load_scene('tennis_racket')
-    found = comparison.shares(comparison.momenta(scene, states), comparison.momenta(scene, others))
+    found = comparison.shares(
+        comparison.momenta(scene, states), comparison.momenta(scene, others), 0.0)
     sizes = 17 ** 0.5, 17 ** 0.5, 73 ** 0.5
     assert found == near(np.array([3, 1, 5 ** 0.5]) / sizes, rel=2e-15)    # worst measured: 0

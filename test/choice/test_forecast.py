@@ -81,7 +81,7 @@ def test_errors_go_with_the_angle_or_its_square_where_a_drive_speeds_a_body_up(
     (lambda t: 0.0 * t, 3.0, 0.0),
     (lambda t: np.where(t < 0.7, t, math.inf), 3.0, math.inf),
     # the largest of all, not the last
-    (lambda t: np.where(t < 0.8, 4.0 * t, t), 1.0, 3.1875)])
+    (lambda t: np.where(t < 0.751, 4.0 * t, t), 1.0, 3.0)])
 def test_errors_of_a_body_sped_up_from_rest(errors, longer, expected):
     times, states = runs.looks(1.0), np.zeros((runs.LOOKS, 14))
     states[:, 7] = times
@@ -105,13 +105,15 @@ SLOWER = 'drag: {linear: 0, angular: 1.0}'
     # one that is as fast in the last quarter as before is not taken to slow down
     (lambda t: np.where((t > 0.6) & (t < 0.8), 3.0, 1.0), [SLOWER], 100.0),
     (lambda t: np.where(t < 0.99, 3.0, math.nan), [SLOWER], 100.0)])
-def test_the_rounding_of_a_body_that_heat_slows_goes_with_the_angle_it_turns(rates, effects,
+def test_the_error_of_a_body_that_heat_slows_goes_with_the_angle_it_turns(rates, effects,
                                                                             expected):
     times = runs.looks(1.0)
     states = np.zeros((runs.LOOKS, 14))
     states[:, 7] = rates(times)
     scene = coasting_scene(effects=effects)
     assert forecast.turned_later(scene, states, 100.0) == near(expected, rel=0.05)
+    # and so do the errors of its steps
+    assert forecast.later(scene, states, 3.0 * times, 100.0) == near(3.0 * expected, rel=0.05)
     assert forecast.turned_later(scene, states, 1.0) == 1.0
 
 

@@ -14,11 +14,24 @@ from rigid_body_sim.integrators.marching.work import TooMuchWork
 TIMES = np.array([1.0, 2.0, 3.0, 4.0])
 
 
-def test_looks_are_spread_evenly_up_to_the_time():
+def test_looks_are_spread_up_to_the_time_one_in_the_second_half_of_each_part():
     found = runs.looks(6.0)
     assert len(found) == runs.LOOKS
     assert found[-1] == 6.0
-    assert np.diff([0.0, *found]) == pytest.approx(np.full(runs.LOOKS, 6.0 / runs.LOOKS))
+    parts = found * (runs.LOOKS / 6.0)
+    assert np.ceil(parts) == pytest.approx(np.arange(1, runs.LOOKS + 1))
+    assert (np.ceil(parts) - parts).max() < runs.EARLIER
+
+
+@pytest.mark.parametrize('periods', [1, 2, 4, 8, 16, 32, 48, 64, 96, 128, 192, 256])
+def test_looks_do_not_see_a_motion_at_the_same_phase_each_time(periods):
+    """Even looks would: the largest of |sin| or |cos| over them would be 0.
+
+    The least one found is 0.998.
+    """
+    phases = math.tau * periods * runs.looks(1.0)
+    assert np.abs(np.sin(phases)).max() > 0.99
+    assert np.abs(np.cos(phases)).max() > 0.99
 
 
 def test_a_run_begins_anew_at_each_strike():

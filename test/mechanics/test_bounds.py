@@ -11,6 +11,9 @@ from rigid_body_sim.mechanics.bounds import (
     angles_turned,
     borne,
     drive,
+    drives,
+    passed,
+    pushed_unbounded,
     swing_momentum,
     swing_rate,
     unbounded,
@@ -94,6 +97,51 @@ def test_dry_friction_at_a_hinge_bears_its_torque_over_the_moment():
 def test_a_spring_has_no_bound_and_a_strike_needs_none(effects, expected):
     """A spring pulls the more the longer it is; a strike does not act between two looks."""
     assert unbounded(scene('pivot', effects)) is expected
+
+
+@pytest.mark.parametrize(('effects', 'expected'), [
+    ('gravity: {g: 10}', False), ('drag: {angular: 0.1}', False), (SPRING, True),
+    ('potential: {energy: "0.5*qz^2"}', True), ('torque: {value: ["sin(t)", 0, 0]}', True),
+    ('torque: {value: ["-wx", 0, 0], books: heat}', False)])
+def test_heat_slows_a_body_and_what_else_has_no_bound_pushes_it(effects, expected):
+    assert pushed_unbounded(scene('pivot', effects)) is expected
+
+
+PULSE = 'torque: {times: [1, 3], values: [[0, 3, 4], [0, 0, 0]]}'
+
+
+@pytest.mark.parametrize(('constraint', 'least'), [('free', 2.0), (HINGE, 3.18)])
+def test_drives_change_where_a_torque_jumps(constraint, least):
+    """5 N m from 1 to 3 s; a torque of 2 N m adds to it all the time."""
+    both = f'{PULSE}, torque: {{value: [2, 0, 0]}}'
+    assert drives(scene(constraint, both)) == [
+        (0.0, near(2.0 / least, rel=1e-15)), (1.0, near(7.0 / least, rel=1e-15)),
+        (3.0, near(2.0 / least, rel=1e-15))]
+    assert drive(scene(constraint, both), None) == near(7.0 / least, rel=1e-15)
+    assert drives(scene(constraint, '')) == [(0.0, 0.0)]
+
+
+def test_where_a_potential_has_no_bounds_a_body_may_swing_with_its_energy():
+    """sqrt(2 I U), 8 J: about the hinge 3.18 kg m^2; a free body about its largest moment, 4."""
+    torsion = 'spring: {stiffness: 5.0}'
+    assert swing_momentum(scene(HINGE, torsion), 8.0) == near(math.sqrt(16.0 * 3.18), rel=1e-14)
+    assert swing_momentum(scene('free', SPRING), 8.0) == 8.0
+    assert swing_momentum(scene(HINGE, torsion)) == 0.0
+    # what gravity can give is known
+    held = scene(HINGE, 'gravity: {g: 10}')
+    assert swing_momentum(held, 1e9) == swing_momentum(held)
+
+
+def test_a_body_passes_through_what_torques_gave_until_they_jumped():
+    """5 N m for 2 s, then another 3 N m: 10 N m s at 3 s, 13 N m s at 4 s, 100/8 and 169/8 J."""
+    stopped = scene(
+        'free', 'torque: {times: [1, 3, 4], values: [[0, 3, 4], [0, 0, -3], [0, 0, 0]]}')
+    assert passed(stopped, 2.9, 0.0) == (0.0, 0.0)
+    assert passed(stopped, 3.0, 0.0) == (12.5, 10.0)
+    assert passed(stopped, 100.0, 0.0) == (169.0 / 8.0, 13.0)
+    assert passed(scene('free', TORQUE), 100.0, 0.0) == (0.0, 0.0)
+    let_go = scene(HINGE, 'gravity: {g: 10}')
+    assert passed(let_go, 1.0, 0.0) == (near(12.0, rel=1e-14), swing_momentum(let_go))
 
 
 def test_a_swing_has_the_momentum_of_its_rate_about_the_largest_moment():

@@ -432,7 +432,9 @@ def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point and within the step from it.
 
     After a step of the same size they follow the polynomial through the rates of both, 16 in all,
-    if its last coefficient is small enough; else a shorter step of the method is made.
+    if its last coefficient is small enough; else a shorter step of the method is made. Where that
+    one does not converge they follow the polynomial of the step itself: of a body at rest the
+    rates are rounding, and a step that was settled at once may be too long for substitution.
     """
     y = load(point, int(VALUES))
     if not dt > 0.0:
@@ -450,8 +452,26 @@ def between(p, control, point, following, dt):
     _take_rates(point, S)
     sweeps = max(1, int(dt / last * point[SWEEPS])) if last > 0.0 else 1
     pull = _pull(control, dt, scales)
-    mean, _, _, _ = solve(p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, pull, scales)
+    mean, _, _, converged = solve(
+        p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, pull, scales)
+    if not converged:
+        return _within(S, following, dt / h)
     y, _ = advanced(y, mean, load(point, VALUES + SIZE), dt)
+    return y
+
+
+@compiled
+def _within(S, following, x):
+    """Return the unknowns after a part x of the step to a point, by the rates at its stages."""
+    _take_rates(following, S)
+    row, back = S[ASIDE:ASIDE + STAGES], x - 1.0
+    for j in range(STAGES):
+        total = 0.0
+        for k in range(STAGES):
+            total = (total + AHEAD[j, STAGES - 1 - k]) * back
+        row[j] = total
+    y, _ = advanced(load(following, int(VALUES)), combined(S, row), load(following, VALUES + SIZE),
+                    following[LAST])
     return y
 
 

@@ -186,10 +186,14 @@ class Bounds(NamedTuple):
         Half the range of its potential over all attitudes, J.
     torque : float
         The largest torque of a drive that may go on for ever, about the reference point, N m.
+    pieces : tuple of (float, float)
+        Rising times (s) and the largest torque of the drive from each to the next (N m), where
+        that is known; before the first it is 0.
     """
 
     energy: float
     torque: float
+    pieces: tuple[tuple[float, float], ...] = ()
 
 
 class Contact(NamedTuple):

@@ -110,5 +110,6 @@ class Torque(Effect):
                 else Pull(constant=frame.from_body((x, y, z))))
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
-        """Return the largest torque."""
-        return Bounds(0.0, max(hypot3(*value) for value in self.values))
+        """Return the largest torque, and that of each piece."""
+        sizes = [hypot3(*value) for value in self.values]
+        return Bounds(0.0, max(sizes), tuple(zip(self.times, sizes, strict=True)))
