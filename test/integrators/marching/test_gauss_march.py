@@ -232,7 +232,7 @@ def test_potentials_pull_beside_the_first_relative_group():
     (0.0, 0.5, 0.5, 2.56, (2.5, 0.5)), (0.0, 0.5, 0.5, 2.25, (2.25, 0.25)),
     (0.25, 4.0, 9.0, 9.0, (2.25, 0.25)), (0.25, 4.0, 9.0, 2.2, (2.2, 0.2)),
     (0.25, 4.0, 9.0, 2.25 + 2e-10, (2.25 + 2e-10, 0.25 + 2e-10)),
-    (0.25, 4.0, 9.0, 2.25 + 1e-9, (2.25, 0.25))])
+    (0.25, 4.0, 9.0, 2.25 + 4e-10, (2.25, 0.25))])
 def test_the_last_step_ends_at_the_end_and_fixed_ones_are_counted_from_the_start(
         step, number, h, end, expected):
     """From 2 s on; the start is 1 s, and one fixed step ends less than a billionth before it."""
@@ -334,6 +334,7 @@ def test_states_are_those_of_the_oscillators_at_points_and_between(how):
             y = MARCH.between(P, control, point, following, dt)
             assert y / size == pytest.approx(true(point[TIME] + dt) / size, abs=1e-13)
     assert MARCH.march(P, control, point, following, 8.0, 4.1, 100)[1]
+    assert control[SWING] == 0.0    # what is given stays
     assert point[TIME] == 4.1
     assert point[VALUES:VALUES + 4] / size == pytest.approx(true(4.1) / size, abs=1e-13)
 
@@ -347,7 +348,7 @@ def test_a_march_pauses_after_so_many_steps_and_goes_on_with_the_same_bits():
     assert whole[1][MARCH.LAST] > 0.0 and whole[1][MARCH.SWEEPS] >= 1.0
 
 
-def one_step(monkeypatch, solved, judged, factor, end=9.0, limits=(0.0, 1e-9)):
+def one_step(monkeypatch, solved, judged, factor, end=9.0, limits=(0.0, 1e-9), hides=0.0):
     """Return (what `_step` returned, (h, last, sweeps, allowed) of its attempts), with made parts.
 
     From 2 s on, after a step of 0.75 s; 0.5 s are planned, and 6 sweeps.
@@ -362,6 +363,7 @@ def one_step(monkeypatch, solved, judged, factor, end=9.0, limits=(0.0, 1e-9)):
     monkeypatch.setattr(MARCH, 'solve', solve)
     monkeypatch.setattr(MARCH, '_judged', lambda *_: judged[len(tried) - 1])
     monkeypatch.setattr(MARCH, '_factor', lambda *_: factor)
+    monkeypatch.setattr(MARCH, 'hidden', lambda *_: hides if len(tried) == 1 else 0.0)
     return MARCH._step(P, control, MARCH._load_point(point), end), tried
 
 
@@ -384,13 +386,15 @@ def test_the_next_step_has_a_sweep_less_where_one_less_would_do(
     assert found.sweeps == sweeps
 
 
-@pytest.mark.parametrize('bad', [(0.6e-9, 1.0, True), (0.0, 3.6, True), (0.0, 1.0, False)])
+@pytest.mark.parametrize('bad', [(0.6e-9, 0.0, 1.0, True), (1e-12, 0.6e-9, 1.0, True),
+                                 (0.0, 0.0, 3.6, True), (0.0, 0.0, 1.0, False)])
 def test_a_step_that_errs_or_turns_too_much_or_does_not_converge_is_tried_shorter(
         bad, monkeypatch):
     """The rates of the step before are gone then; 5e-10 is allowed, and half an angle of 3.5."""
-    error, x, converged = bad
+    error, hides, x, converged = bad
     (found, good), tried = one_step(
-        monkeypatch, [(6, True, converged), (6, False, True)], [(error, x), (1e-12, 1.0)], 0.5)
+        monkeypatch, [(6, True, converged), (6, False, True)], [(error, x), (1e-12, 1.0)], 0.5,
+        hides=hides)
     assert good and (found.time, found.last, found.step, found.sweeps) == (2.25, 0.25, 0.125, 6)
     assert tried == [(0.5, 0.75, 6, 0.5e-9), (0.25, 0.0, 6, 0.25e-9)]
 
@@ -417,6 +421,19 @@ def test_a_shorter_step_between_points_has_its_share_of_the_sweeps(last, dt, swe
     found = MARCH.between(P, control, point, following, dt)
     assert given == [(dt, last, sweeps, 1e-9 * dt)]
     assert found == near([y + dt * k for y, k in zip(START, (1, 2, 3, 4), strict=True)], rel=1e-15)
+
+
+@pytest.mark.parametrize(('tail', 'tolerance', 'along'), [
+    (1e-10, 1e-9, True), (1e-18, 0.0, False), (0.5e-18, 0.0, True), (1e-9, 1e-9, False)])
+def test_the_curve_is_taken_where_its_last_coefficients_are_allowed_or_rounding(
+        tail, tolerance, along, monkeypatch):
+    """Allowed is the tolerance for the step of 0.5 s; rounding is 2^-60, 0.9e-18."""
+    monkeypatch.setattr(MARCH, 'solve', lambda *_: ((0.0,) * 4, 0, False, True))
+    monkeypatch.setattr(MARCH, 'along', lambda S, y, part: part)
+    control, point, following = room(tolerance=tolerance)
+    point[MARCH.LAST] = following[MARCH.LAST] = 0.5
+    control[WORK + MARCH.FOR_POINT], control[WORK + MARCH.TAIL] = point[TIME], tail
+    assert (MARCH.between(P, control, point, following, 0.2) == 0.4) == along
 
 
 def test_the_curve_of_a_step_is_the_polynomial_through_the_rates_of_two_steps():

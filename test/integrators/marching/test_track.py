@@ -169,7 +169,9 @@ def test_states_in_an_order_are_filled_up_to_the_first_that_is_far():
     for time, row in zip(times, out, strict=True):
         assert row.tolist() == (known(time) if time < 100.0 else [-1.0] * 3)
     assert piece[1] == 9 + track.AT_ONCE    # those within a step cost nothing
-    assert TRACK.states(piece, times, order[:4], math.inf, out) == 4
+    out[:] = -1.0
+    assert TRACK.states(piece, times, order[:4], math.inf, out) == 4    # from its start again
+    assert out[order[:4]].tolist() == [known(time) for time in times[order[:4]]]
 
 
 @pytest.mark.parametrize(('begin', 'time', 'omega', 'expected'), [
