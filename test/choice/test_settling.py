@@ -35,6 +35,33 @@ def test_another_method_is_tried_where_one_errs_by_more_than_rounding(errors, ta
     assert found.method == (first if taken == 'first' else taken)
 
 
+@pytest.mark.parametrize(('able', 'others'), [(['dop8'], {False}), (['dop8', 'gauss16'], {True})])
+def test_a_trial_knows_whether_another_method_could_run_the_scene(able, others, monkeypatch):
+    scene, seen = parse_scene(SLOW.replace('EFFECTS', TORQUE)), set()
+    monkeypatch.setattr(Trial, 'take', lambda self, tolerance: (
+        seen.add(self._others), tolerance)[1])
+    monkeypatch.setattr(Trial, 'excess', lambda *_: 0.0)
+    settling.settle(scene, able, 1e-11, 6.0)
+    assert seen == others
+
+
+@pytest.mark.parametrize('misses', [True, False])
+def test_a_method_that_was_measured_is_tried_too_where_the_first_one_misses(misses, monkeypatch):
+    """It errs by a tenth of what the first one errs by."""
+    scene = parse_scene(SLOW.replace('EFFECTS', TORQUE))
+    first, _, _ = measured.pick(scene, ['dop8', 'gauss16'], 1e-11, 6.0)
+    monkeypatch.setattr(measured, 'least_error', lambda *_: 1e-14)
+    monkeypatch.setattr(Trial, 'take', lambda self, tolerance: tolerance)
+    monkeypatch.setattr(Trial, 'excess', lambda *_: 0.0)
+    monkeypatch.setattr(Trial, 'misses', lambda *_: misses)
+    monkeypatch.setattr(Trial, 'beside', lambda *_: 0.0)
+    told = {'dop8': 8e-12, 'gauss16': 8e-12, first: 8e-11}
+    monkeypatch.setattr(Trial, 'forecast', lambda self, _: forecast.Forecast(
+        told[self.prototype.method.NAME], 6.0))
+    found = settling.settle(scene, ['dop8', 'gauss16'], 1e-11, 6.0)
+    assert (found.method == first) != misses
+
+
 @pytest.mark.parametrize(('cut_short', 'excess', 'patiences'), [
     (True, 1e-8, {1, 16}), (False, 1e-8, {1}), (True, 0.0, {1}), (True, np.inf, {1, 16})])
 def test_a_miss_for_want_of_steps_asks_for_patience(cut_short, excess, patiences, monkeypatch):

@@ -91,6 +91,18 @@ def test_the_angle_of_a_trial_counts_what_a_drive_and_a_strike_add():
     assert one._radians == near((3.0 + 2.0) * 4.0, rel=1e-12)
 
 
+@pytest.mark.parametrize(('method', 'finest', 'coarsest'), [
+    ('dop8', 2.0 ** -30, 2.0 ** -20), ('gauss16', 2.0 ** -35, 2.0 ** -25),
+    ('taylor', 2.0 ** -30, 2.0 ** -20)])
+def test_tolerances_are_those_that_were_measured_of_the_method_or_else_of_dop8(
+        method, finest, coarsest, monkeypatch):
+    monkeypatch.setattr(trial.measured, 'rows', lambda _: {
+        'dop8': [{'tolerance': 2.0 ** -20}, {'tolerance': 2.0 ** -30}],
+        'gauss16': [{'tolerance': 2.0 ** -25}, {'tolerance': 2.0 ** -35}]})
+    one = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-9, 6.0, method, 1e-12, 1, True)
+    assert (one._finest, one._coarsest) == (finest, coarsest)
+
+
 @pytest.mark.parametrize(('tolerance', 'expected'), [
     (2.0 ** -20, -20), (1.99 * 2.0 ** -20, -20), (2.0 ** -41, -40), (0.0, -40), (1.0, -10)])
 def test_tolerances_are_powers_of_two_within_those_of_the_table(tolerance, expected, tried):

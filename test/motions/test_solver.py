@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.motions import solver
+from rigid_body_sim.motions import driven_body, fixed_axis, loops, solver
+from rigid_body_sim.motions.free_body import free_body
+from rigid_body_sim.motions.pendulum import pendulum
 from rigid_body_sim.motions.solver import CROWD, NONE_YET, Exact
 from rigid_body_sim.scene.scene import load_scene
 
@@ -127,6 +130,29 @@ def test_an_event_found_on_the_states_is_told_once():
     one._watcher = types.SimpleNamespace(events=lambda until, tick: found)
     assert one.events(1.0, 2.0) == found[1:]
     assert one.events(0.5, 2.0) == found
+
+
+@pytest.mark.parametrize('motion', [driven_body, fixed_axis, free_body, pendulum])
+def test_many_states_are_side_by_side_where_the_motion_has_a_kernel_for_it(motion):
+    bound = solver.loops(motion)
+    assert (bound.states is bound.one_by_one) == (motion.fill_columns is None)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('parameters', [[5.0], [5.0, 6.0, 7.0]])
+def test_each_of_many_bodies_has_its_own_parameters_or_those_of_all(parameters):
+    """A made motion tells the time, the parameter and the start of the body."""
+    made = specialise(
+        loops, ANCHOR_SIZE='ANCHOR_SIZE = 2\n', **loops.ONE_BY_ONE,
+        anchor='def anchor(parameters, start, out):\n    out[:] = parameters[0], start[0]\n',
+        state='def state(anchored, time, out):\n    out[:3] = time, *anchored\n')
+    starts, out = np.zeros((3, 14)), np.empty((3, 2, 14))
+    starts[:, 0] = 1.0, 2.0, 3.0
+    made.ensemble(np.array(parameters)[:, None], starts, np.array([8.0, 9.0]), out)
+    assert out[:, :, :3].tolist() == [
+        [[time, parameter, start] for time in (8.0, 9.0)]
+        for parameter, start in zip(parameters * (3 // len(parameters)), (1.0, 2.0, 3.0),
+                                    strict=True)]
 
 
 @pytest.mark.parametrize('times', [(), (1.0,)])

@@ -179,6 +179,71 @@ def test_wrong_columns_and_places_are_refused():
         ensemble('tennis_racket', starts, [1.0], out=np.empty((2, 14)))
     with pytest.raises(BadInput, match=r'got shape None of list'):
         ensemble('tennis_racket', starts, [1.0], out=[])
+    with pytest.raises(BadInput, match=r'of float32'):
+        ensemble('tennis_racket', starts, [1.0], out=np.empty((2, 1, 14), np.float32))
+    for names in ((), ('position', 'position')):
+        with pytest.raises(BadInput, match='each name once, at least one'):
+            ensemble('tennis_racket', starts, [1.0], columns=names)
+
+
+def test_starts_beside_one_override_of_initial_are_refused():
+    scene, other = load_scene('tennis_racket'), load_scene('tennis_racket', [
+        'initial.angular_velocity=[0, 4, 0]'])
+    starts = np.array([scene.initial.vector] * 2)
+    assert module._starts(starts, scene, [scene, scene]) is starts
+    with pytest.raises(BadInput, match='beside overrides of `initial`'):
+        module._starts(starts, scene, [scene, other])
+
+
+def test_blocks_are_filled_one_by_one_and_their_bodies_are_counted(monkeypatch):
+    monkeypatch.setattr(module, '_blocks', lambda bodies, times: [slice(0, 3), slice(3, 5)])
+    choice, told = types.SimpleNamespace(many=lambda starts, times, out: out.__setitem__(
+        ..., starts[:, None])), []
+    starts, out = np.arange(70.0).reshape(5, 14), np.empty((5, 1, 6))
+    module._fill(choice, starts, np.zeros(1), ('velocity', 'angular_velocity'), out, told.append)
+    velocities = [starts[:, module.PLACES[name]] for name in ('velocity', 'angular_velocity')]
+    assert (out[:, 0] == np.hstack(velocities)).all()
+    assert told == [3, 2]
+
+
+def test_bodies_are_apart_by_the_largest_angle_at_their_times(monkeypatch):
+    """Turned about z by an angle."""
+    angles = np.array([[0.1, 0.3, 0.2], [0.0, 0.05, 0.4]])
+
+    def fill(choice, starts, times, columns, out, report):
+        out[:] = 0.0
+        out[..., 2], out[..., 3] = np.sin(0.5 * angles), np.cos(0.5 * angles)
+    monkeypatch.setattr(module, '_fill', fill)
+    vector = np.zeros((2, 3, 14))
+    vector[..., 4] = 1.0
+    one = module.Ensemble(vector, asked=(np.zeros((2, 14)), np.arange(3.0)))
+    assert one._apart(None, np.arange(2)) == near([0.3, 0.4], rel=1e-14)
+
+
+@pytest.mark.parametrize(('tolerance', 'nearly', 'expected'), [
+    (1e-9, False, [1e-3, 2e-8]), (1e-9, True, [3e-3, 2e-3]), (None, True, [3e-3, 2e-3]),
+    (None, False, [1e-3, 0.0]), (module.FINEST, False, [1e-3, 2e-8])])
+def test_the_errors_of_bodies_are_those_of_their_angle_of_their_scene_and_of_a_finer_run(
+        tolerance, nearly, expected, monkeypatch):
+    """The angle turned costs 1e-3 and 0 rad, the scene 2e-3; runs differ by 5e-17 and 2e-8.
+
+    5e-17 may be the same steps: the finest run tells then, if it is finer.
+    """
+    monkeypatch.setattr(module, 'of_bodies', lambda *_: np.array([1e-3, 0.0]))
+    asked = []
+
+    def apart(self, finer, bodies):
+        asked.append(finer)
+        return np.array([5e-17, 2e-8])[bodies]
+    monkeypatch.setattr(module.Ensemble, '_apart', apart)
+    choice = types.SimpleNamespace(
+        scene=None, many=None, is_nearly=nearly, expected_error=2e-3,
+        finer=lambda to=None: tolerance and types.SimpleNamespace(tolerance=tolerance, to=to))
+    one = module.Ensemble(np.zeros((2, 1, 14)), choices=[(choice, np.arange(2))],
+                          asked=(np.zeros((2, 14)), np.zeros(1)))
+    assert one.expected_errors() == near(expected, rel=1e-12)
+    assert [finer.to for finer in asked] == (
+        [] if tolerance is None else [None] if tolerance == module.FINEST else [None, 0.0])
 
 
 def test_too_much_for_memory_is_said_before_anything_runs():

@@ -29,6 +29,17 @@ def test_after_a_command_nothing_is_foretold(command):
         assert simulation.expected_error == 1e-13
 
 
+@pytest.mark.parametrize(('foretold', 'allowed', 'told'), [
+    (1e-13, None, 1e-13), (1e-13, (1e-9, 0.5), 1e-9), (1e-8, (1e-9, 0.5), 1e-8),
+    (None, (1e-9, 0.5), 1e-9), (None, None, None)])
+def test_what_a_run_has_allowed_itself_counts_where_it_is_more_than_what_was_foretold(
+        foretold, allowed, told, monkeypatch):
+    simulation = Simulation('tennis_racket', 'rk4', step=0.1)
+    monkeypatch.setattr(type(simulation.choice), 'expected_error', foretold)
+    monkeypatch.setattr(Simulation, '_allowed', allowed)
+    assert simulation.expected_error == told
+
+
 def test_commands_of_a_tick_that_cancel_leave_the_forecast():
     simulation = Simulation('tennis_racket')
     simulation.hold(torque=(0.0, 1.0, 0.0))

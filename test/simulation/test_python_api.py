@@ -120,6 +120,17 @@ def test_at_event_is_the_state_at_the_next_one():
     assert again.events == simulation.events      # a look ahead takes none away
 
 
+@pytest.mark.parametrize('within', [12.0, 2048.0])
+def test_at_event_looks_as_far_as_it_is_told(within):
+    """At first it looks through a 1024th of that time; the body flips later than that."""
+    simulation = Simulation('tennis_racket')
+    flip = simulation.at_event('flip', within=within)
+    assert flip.time > within / 1024.0
+    assert flip.time == simulation.at_event('flip', within=1.001 * flip.time).time
+    with pytest.raises(BadInput, match='no event comes in that time'):
+        simulation.at_event('flip', within=0.999 * flip.time)
+
+
 def test_an_event_that_does_not_come_is_said():
     with pytest.raises(BadInput, match=r"no 'rolling' within 30 s; in that time come: flip"):
         Simulation('tennis_racket').at_event('rolling', within=30.0)

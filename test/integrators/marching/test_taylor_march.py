@@ -11,8 +11,8 @@ from near import near
 
 from rigid_body_sim.integrators.families import power_series
 from rigid_body_sim.integrators.marching import taylor_march
-from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES
-from rigid_body_sim.integrators.marching.taylor_series import ORDER
+from rigid_body_sim.integrators.marching.points import ORIGIN, SCALES, STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.taylor_series import ORDER, Turning
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.scene.scene import parse_scene
 
@@ -81,12 +81,43 @@ def test_fixed_steps_are_counted_from_the_start_and_the_last_one_ends_at_the_end
         march.march(p, control, point, following, target, 0.25, 100)
         times.append((float(point[TIME]), float(following[TIME])))
     assert times == [(0.0, 0.1), (0.1, 0.2), (0.2, 0.25)]
+    assert march.march(p, control, point, following, 0.24, 0.25, 100) == (0, True)
     assert march.march(p, control, point, following, 0.25, 0.25, 100) == (1, True)
     assert point[TIME] == 0.25
     # an end that close to a point is that point
     march, p, control, point, following = marching(step=0.1)
     march.march(p, control, point, following, 0.15, 0.2 + 1e-12, 100)
     assert following[TIME] == 0.2 + 1e-12
+
+
+def test_a_march_pauses_after_as_many_steps_as_it_may_take():
+    march, p, control, point, following = marching(step=0.1)
+    assert march.march(p, control, point, following, 0.55, 10.0, 2) == (2, True)
+    assert (point[TIME], following[TIME]) == (0.2, near(0.3, rel=1e-15))
+    assert march.march(p, control, point, following, 0.55, 10.0, 9) == (3, True)    # one is known
+
+
+@pytest.mark.parametrize(('time', 'rate'), [(1e17, 1.0), (0.0, 1e200)])
+def test_a_step_that_does_not_move_time_or_gives_no_number_is_not_good(time, rate):
+    """A tenth of a second is nothing beside 1e17 s; 1e200 rad/s have no square."""
+    march, p, control, point, following = marching(step=0.1)
+    point[TIME] = control[ORIGIN] = time
+    point[VALUES + 4:VALUES + 7] = rate, 0.0, 0.0
+    with np.errstate(all='ignore'):
+        assert march.march(p, control, point, following, 1e18, 1e19, 10) == (0, False)
+    assert following[TIME] == point[TIME] == time
+
+
+@pytest.mark.parametrize(('before', 'rate', 'scale'), [(0.0, 3.0, 9.0), (30.0, 3.0, 30.0),
+                                                       (0.0, 0.0, None)])
+def test_the_scale_is_the_largest_square_of_a_rate_so_far_or_what_acts_on_a_body_at_rest(
+        before, rate, scale):
+    march, p, control, point, following = marching(step=0.01)
+    point[SCALES], point[VALUES + 4:VALUES + 7] = before, (rate, 0.0, 0.0)
+    march.march(p, control, point, following, 0.0, 10.0, 1)
+    rates = control[march.WORK:][march.PLACES:][4:7]    # those of omega
+    assert following[SCALES] == (scale or near(math.sqrt(rates @ rates), rel=1e-15))
+    assert following[SCALES] > 0.0
 
 
 @pytest.mark.parametrize(('room', 'ends'), [(1.05, True), (1.15, False)])
@@ -165,6 +196,14 @@ def test_the_first_step_is_what_the_last_term_allows_and_all_is_where_nothing_mo
         near(first, rel=1e-14), near(first, rel=1e-14))
     assert taylor_march.chosen(0.0, 0.0, tolerance, 0.0) == (1e-3, 1e-3)
     assert taylor_march.chosen(0.0, 0.0, tolerance, 0.25) == (1.0, 1.0)
+
+
+@pytest.mark.without_numba
+def test_unknowns_are_finite_where_their_squares_are():
+    for value, finite in ((1e150, True), (1e200, False), (math.nan, False)):
+        for turning in (Turning((0.0,) * 4, (0.0, value, 0.0)),
+                        Turning((value, 0.0, 0.0, 0.0), (0.0,) * 3)):
+            assert taylor_march._is_finite(turning) == finite
 
 
 @pytest.mark.without_numba

@@ -133,11 +133,11 @@ def test_a_march_that_is_lost_says_so_and_where():
 @pytest.mark.parametrize('end', [math.inf, 10.0])
 def test_a_state_within_the_step_costs_nothing_and_none_is_later_than_the_end(end):
     piece, out = piece_at_start(), np.zeros(3)
-    for time in (3.25, 3.75, 3.0, 7.5, 4.5):
+    for time in (3.25, 3.75, 3.0, 7.5, 8.0, 4.5):    # a step ends before its end
         assert TRACK.state(piece, time, end, out) == REACHED
         assert out.tolist() == known(time)
     made = piece[1]
-    assert made == 7 + 4    # back from the start, to the fourth point
+    assert made == 8 + 4    # back from the start, to the fourth point
     for time in (4.0, 4.999):
         assert TRACK.state(piece, time, end, out) == REACHED
     assert piece[1] == made
@@ -169,7 +169,9 @@ def test_states_in_an_order_are_filled_up_to_the_first_that_is_far():
     for time, row in zip(times, out, strict=True):
         assert row.tolist() == (known(time) if time < 100.0 else [-1.0] * 3)
     assert piece[1] == 9 + track.AT_ONCE    # those within a step cost nothing
-    assert TRACK.states(piece, times, order[:4], math.inf, out) == 4
+    out[:] = -1.0
+    assert TRACK.states(piece, times, order[:4], math.inf, out) == 4    # from its start again
+    assert out[order[:4]].tolist() == [known(time) for time in times[order[:4]]]
 
 
 @pytest.mark.parametrize(('begin', 'time', 'omega', 'expected'), [
