@@ -259,3 +259,57 @@ def test_the_bar_shows_how_much_has_been_played_unless_it_is_hidden(hidden, show
     ReplayNode._show(types.SimpleNamespace(
         _progress=bar, _started=5_000_000_000, player=types.SimpleNamespace(now=17_345_678_901)))
     assert seen == shown
+
+
+@pytest.mark.parametrize(('depth', 'kept'), [(1, [b'3']), (2, [b'2', b'3']), (0, [b'3'])])
+def test_who_comes_late_gets_the_latched_messages_from_before_the_start(depth, kept):
+    """As many as the depth, of those with an earlier time; a depth of 0 was not recorded."""
+    from rigid_body_sim.node.replay_node import ReplayNode
+    sent, asked = [], []
+
+    def publisher(durability):
+        return types.SimpleNamespace(
+            qos_profile=types.SimpleNamespace(durability=durability, depth=depth),
+            handle=types.SimpleNamespace(publish_raw=sent.append))
+
+    def messages(names, end):
+        asked.append((names, end))
+        return (types.SimpleNamespace(data=data) for data in (b'1', b'2', b'3'))
+    stands_for = types.SimpleNamespace(
+        _recording=types.SimpleNamespace(messages=messages),
+        _sending={'/scene': publisher(DurabilityPolicy.TRANSIENT_LOCAL),
+                  '/pose': publisher(DurabilityPolicy.VOLATILE)})
+    ReplayNode._publish_latched(stands_for, ['/pose', '/scene'], 500)
+    assert sent == kept and asked == [(['/scene'], 499)]
+
+
+@pytest.mark.parametrize(('loop', 'ended', 'told'), [
+    (False, True, '70 messages on 2 topics, 1.500 s; timing error p50 12, p99 345, max 6789 us'),
+    (True, False, '70 messages on 2 topics in 3 loops, 1.500 s, ended at 0.25 s; timing error '
+     'p50 12, p99 345, max 6789 us')])
+def test_the_report_is_in_seconds_and_microseconds(monkeypatch, loop, ended, told):
+    from rigid_body_sim.node import replay_node
+    lines = []
+    monkeypatch.setattr(replay_node, 'tell', lines.append)
+    player = types.SimpleNamespace(
+        failure=None, published=70, loops=3, seconds=1.5, now=5_250_000_000,
+        lateness=types.SimpleNamespace(
+            summary=lambda: {'p50': 12e-6, 'p99': 345e-6, 'max': 6.789e-3}))
+    stands_for = types.SimpleNamespace(
+        player=player, _recording=types.SimpleNamespace(start_time=5 * SECOND),
+        _sending={'/pose': None, '/scene': None},
+        _options=types.SimpleNamespace(json=False, loop=loop))
+    stands_for._played = lambda: replay_node.ReplayNode._played(stands_for)
+    assert replay_node.ReplayNode._report(stands_for, ended) == 0
+    assert lines == [told]
+
+
+@pytest.mark.parametrize(('name', 'kind', 'said'), [
+    ('/a', 'std_msgs/msg/Nothing', 'has messages of std_msgs/msg/Nothing, which is not installed'),
+    ('/a', 'no_msgs/msg/String', 'has messages of no_msgs/msg/String, which is not installed'),
+    ('/a', 'String', 'has messages of String, which is not installed'),
+    ('a', 'std_msgs/msg/String', 'is not the complete name of a topic')])
+def test_a_topic_that_cannot_be_published_is_refused(name, kind, said):
+    from rigid_body_sim.node.replay_node import ReplayNode
+    with pytest.raises(BadInput, match=said):
+        ReplayNode._publisher(types.SimpleNamespace(), Topic(name, kind))
