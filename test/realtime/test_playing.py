@@ -53,8 +53,10 @@ def play(monkeypatch):
         monkeypatch.setattr(playing, 'ask_for_priority', asked.append)
         ended = []
         player = Player(reading, {'/a': publish},
-                        lambda time: told.append((clock.now - MS, time)), rate, paused,
+                        lambda time: told.append((clock.now - MS, time)), rate, paused is True,
                         lambda: ended.append(1))
+        if paused == 'later':
+            player.pause()
         player.run()
         assert player.failure is None and ended == [1]
         return player, sent, told, asked
@@ -97,10 +99,11 @@ def test_messages_of_one_instant_are_of_one_loop(play):
     assert (player.loops, player.published, sent) == (1, 4, [0, 0, 3 * MS, 3 * MS])
 
 
-def test_after_a_pause_it_goes_on_as_if_no_time_had_passed(play):
+@pytest.mark.parametrize('paused', [True, 'later'])
+def test_after_a_pause_it_goes_on_as_if_no_time_had_passed(play, paused):
     """A pause is looked at every 10 ms: one that ends after 25 ms has ended after 30 ms."""
     player, sent, told, _ = play(Read((0, 50 * MS), (3 * MS, 53 * MS), start=50 * MS),
-                                 paused=True, resume_at=26 * MS, stop_at=200 * MS)
+                                 paused=paused, resume_at=26 * MS, stop_at=200 * MS)
     assert sent == [30 * MS, 33 * MS] and player.seconds == 0.003
     assert told[:3] == [(10 * k * MS, 50 * MS) for k in range(3)]
     assert told[-1] == (33 * MS, 150 * MS)
