@@ -187,6 +187,59 @@ def test_a_node_cannot_follow_the_clock_that_it_publishes(publish, follows, refu
     assert len(begun) == (not refused)
 
 
+@pytest.mark.parametrize('publish', [['pose'], ['pose', 'robot_description']])
+@pytest.mark.parametrize(('overrun', 'follows'), [('skip_publish', True), ('slip', False)])
+def test_parts_are_made_as_the_parameters_say(publish, overrun, follows, monkeypatch):
+    """All that can fail is done before the services are offered."""
+    made = {}
+
+    def keep(name):
+        def make(*arguments):
+            made[name] = arguments
+            return name
+        return make
+    for name in ('rehearse', 'Commands', 'open_journal', 'Session', 'Ticker', 'Diagnostics',
+                 'StatusLine', 'frames_of', 'Followed', 'Steady', 'Publishing'):
+        monkeypatch.setattr(module, name, keep(name))
+    monkeypatch.setattr(module.state_topics, 'chosen', lambda names: 'outputs')
+    monkeypatch.setattr(module.state_topics, 'scene_messages', lambda *_: 'messages')
+    scene = types.SimpleNamespace(notes=['a note'], name='top')
+    monkeypatch.setattr(Engine, '_prepare', lambda self, changes: types.SimpleNamespace(
+        scene=scene, missed=''))
+    said, services = [], []
+    logger = types.SimpleNamespace(info=said.append, warning=said.append)
+    node = types.SimpleNamespace(
+        publishers=(), subscriptions=(), services=(), timers=(), get_logger=lambda: logger,
+        get_clock=lambda: 'clock',
+        create_service=lambda kind, name, serve: services.append(
+            (kind.__name__, name, serve.__name__)))
+    settings = types.SimpleNamespace(
+        publish=publish, use_sim_time=follows, record=False, rate=50.0, real_time_factor=2.0,
+        overrun=overrun, refuse_unknown_qos=lambda: None, on_change=keep('changes'))
+    engine = Engine(node, settings, 'at end')
+    assert said == ['a note']
+    assert made['Publishing'] == (
+        node, 'outputs', 'frames_of', 'messages', 'robot_description' in publish)
+    source = 'Followed' if follows else 'Steady'
+    assert made['Ticker'] == (
+        'Session', source, 50.0, 2.0, overrun == 'skip_publish', 'at end')
+    assert made[source] == (('clock',) if follows else ())
+    assert made['changes'] == (engine._before_change, engine._after_change)
+    assert services == [('Trigger', '~/reset', '_reset'), ('SetBool', '~/pause', '_pause'),
+                        ('Trigger', '~/step', '_step')]
+
+
+def test_a_node_ends_within_a_second():
+    """It waits for the tick thread, and as long again for the recorder."""
+    assert 2.0 * module.STOP_WITHIN < 1.0
+
+
+def test_a_service_waits_for_its_tick_for_a_limited_time():
+    asked = []
+    module._result_soon(types.SimpleNamespace(result=asked.append))
+    assert asked == [module.ANSWER_WITHIN]
+
+
 @pytest.mark.parametrize(('running', 'told'), [
     (2_000_000_000, '2001 ticks in 2.000 s (1000.000 Hz)'), (0, '2001 ticks in 0.000 s (0.000 Hz)')
 ])
