@@ -345,6 +345,7 @@ def test_parts_are_made_as_the_options_say(
 
         def create_publisher(self, kind, name, profile):
             publishers[name] = kind, profile.depth
+            return types.SimpleNamespace(publish=keep('told'))
 
         def create_timer(self, period, show, clock):
             made['timers'].append((period, clock.clock_type.name))
@@ -361,9 +362,11 @@ def test_parts_are_made_as_the_options_say(
     Made(stop, recording, wanted)
     names = wanted.topics or ['/a', '/c']
     assert made['Reading'] == [(recording, names, begins, 17_345_678_901, wanted.loop)]
-    [(reading, publish, _, *asked)] = made['Player']
+    [(reading, publish, tell_clock, *asked)] = made['Player']
     assert (reading, publish) == ('reading', {name: name for name in names})
     assert asked == [wanted.rate, False, 'stop']
+    tell_clock(7 * SECOND)
+    assert [message.clock.sec for message, in made['told']] == ([7] if clock else [])
     # only the latest time counts
     assert publishers == ({'/clock': (Clock, 1)} if clock else {})
     assert made['tqdm'] == [(('total', total), ('unit', ' s'), ('disable', None),
@@ -400,3 +403,18 @@ def test_the_clock_is_in_seconds_and_nanoseconds():
     from rigid_body_sim.node.replay_node import _clock_message
     told = _clock_message(1_700_000_000_999_999_999).clock
     assert (told.sec, told.nanosec) == (1_700_000_000, 999_999_999)
+
+
+@pytest.mark.parametrize(('data', 'called', 'said'), [
+    (True, 'pause', 'paused at 2.25 s'), (False, 'resume', 'playing at 2.25 s')])
+def test_a_pause_is_begun_and_ended_and_its_place_is_told(data, called, said):
+    from rigid_body_sim.node.replay_node import ReplayNode
+    calls = []
+    player = types.SimpleNamespace(pause=lambda: calls.append('pause'),
+                                   resume=lambda: calls.append('resume'), now=7_250_000_000)
+    stands_for = types.SimpleNamespace(
+        player=player, _recording=types.SimpleNamespace(start_time=5 * SECOND))
+    stands_for._played = lambda: ReplayNode._played(stands_for)
+    response = ReplayNode._pause(stands_for, types.SimpleNamespace(data=data),
+                                 types.SimpleNamespace())
+    assert (response.success, response.message, calls) == (True, said, [called])

@@ -117,6 +117,7 @@ def test_numbers_of_a_changed_scene_are_put_into_the_controls_that_there_are(mad
     one._scene_folder = contextlib.nullcontext()
     one.begin(scene, 'a top', 0.5)
     before = dict(controls)
+    assert before['spin (rad/s)'].value == near(60.0, rel=1e-12)    # that of the scene
     one.begin(parse_scene(parameters.changed(scene.text, ('body', 'mass'), 0.75)), 'a top', 0.5)
     assert controls['body.mass'] is before['body.mass']
     assert controls['body.mass'].value == 0.75
@@ -220,7 +221,7 @@ def test_numbers_are_lengths_and_what_is_unknown_is_said_so(made):
     moved.vector[1:5] = 1.0, 0.0, 0.0, 0.0
     beside = moment(5.0)
     beside.vector[1:5] = math.cos(0.5), math.sin(0.5), 0.0, 0.0    # by 1 rad about z
-    beside.vector[8:11] = 1.0, 2.0, 2.0
+    moved.vector[8:11], beside.vector[8:11] = (1.0, 1.0, 1.0), (2.0, 3.0, 3.0)
     one.draw(moved, arrows, {'event': 'flip', 'predicted_period': 2.0, 'measured_period': 2.5,
                              'predicted_rate': 3.0}, beside)
     for value in ('5.000 s', '2.5 J', '7 rad/s', '5 N m s', 'unknown', '0 N m', '1 rad', '3 m'):
