@@ -85,7 +85,7 @@ class ReplayNode(Answering, Node):
         )
         try:
             message_type = getattr(importlib.import_module(f'{package}.msg'), name)
-        except (ImportError, ValueError, AttributeError):
+        except (ImportError, TypeError, ValueError, AttributeError):
             raise BadInput(
                 topic.name,
                 f'has messages of {topic.type}, which is not installed here',

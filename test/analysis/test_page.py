@@ -91,6 +91,57 @@ def test_the_verdict_comes_first_and_tells_what_is_wrong(written):
         assert words in page._verdict(found | {'commands': commands}, None)
 
 
+def found_of(energy=1e-16, square=1e-16, stretches=1, levels=(), **more):
+    """Return what the verdict is about; nothing else has happened."""
+    kept = {name: {'largest_residual': worst, 'stretches': stretches, 'levels': list(levels)}
+            for name, worst in (('energy', energy), ('angular_momentum_squared', square))}
+    return {**kept, 'strikes': 0, 'accuracy_missed': [], 'run': {'accuracy': 1e-9}, 'lines': [],
+            'timing': {'ticks': 500, 'missing': 3}, 'left_out_by_recorder': 3, 'events': {},
+            'commands': 0, **more}
+
+
+def line(predicted, measured):
+    return {'predicted': predicted, 'measured': measured}
+
+
+@pytest.mark.parametrize(('found', 'good', 'said'), [
+    (found_of(), True, '<b>Kept:</b> energy to 1.0e-16 and L² to 1.0e-16 (relative, which is '
+     'round-off). 500 ticks, none lost.'),
+    # ten times the accuracy that was asked are allowed, or of round-off where it was finer
+    (found_of(1e-8), True, '<b>Kept:</b> energy to 1.0e-08 and L² to 1.0e-16 (relative). 500'),
+    (found_of(1e-16, 1.01e-8), False, '<b>Not kept:</b> energy'),
+    (found_of(10.0 * page.FLOOR, run={}), True, '<b>Kept:</b>'),
+    (found_of(page.FLOOR, run=None), True, '(relative, which is round-off)'),
+    (found_of(11.0 * page.FLOOR, run={'accuracy': None}), False, '<b>Not kept:</b>'),
+    (found_of(None), True, '<b>Kept:</b> L² to 1.0e-16 (relative'),
+    (found_of(None, None), True, 'Energy and L² need not be constant in this scene. 500 ticks'),
+    (found_of(left_out_by_recorder=2), False, '500 ticks, 1 lost.'),
+    (found_of(accuracy_missed=['a < b']), False, ' <b>Note:</b> a &lt; b. 500'),
+    (found_of(stretches=2, levels=[{'begun_by': ''}, {'begun_by': 'strike'},
+                                   {'begun_by': 'reset'}, {'begun_by': 'strike'}]), True,
+     '<b>Kept within each of 2 stretches:</b> energy to 1.0e-16 and L² to 1.0e-16 (relative, '
+     'which is round-off). It is changed by resets and strikes between them. 500'),
+    # L² alone is kept
+    (found_of(stretches=2, levels=[{'begun_by': ''}, {'begun_by': 'parameters'}]) | {
+        'energy': {'largest_residual': None, 'stretches': 0, 'levels': []}}, True,
+     '<b>Kept within each of 2 stretches:</b> L² to 1.0e-16 (relative, which is round-off). It is '
+     'changed by changes of parameters between them. 500'),
+    (found_of(lines=[line(2.0, 2.002), line(3.0, None)]), True,
+     ' 1 predicted frequency was measured, within 1.0e-03.'),
+    (found_of(lines=[line(2.0, 1.99), line(4.0, 4.004)]), True,
+     ' 2 predicted frequencies were measured, within 5.0e-03.'),
+    (found_of(events={'flip': 4}, strikes=2), True, ' none lost. 4 x flip, 2 x strike.')])
+def test_the_verdict_is_what_was_measured(found, good, said):
+    text = page._verdict(found, None)
+    assert text.startswith(f'<p class="verdict{"" if good else " bad"}">') and said in text
+
+
+def test_where_energy_is_not_constant_the_verdict_is_about_its_ledger():
+    ledger = None, {'energy_residual': np.array([0.0, -3e-12, np.nan, 1e-12])}
+    text = page._verdict(found_of(None, None), ledger)
+    assert 'in this scene. The ledger balances energy to 3.0e-12 (relative). 500 ticks' in text
+
+
 def test_no_button_of_a_figure_uploads_it(written):
     """Every figure names its buttons; what Plotly would add by itself sends the figure away."""
     own = re.sub(r'<script type="application/gzip".*?</script>', '',

@@ -3,15 +3,18 @@
 
 import json
 import pathlib
+import types
 
 import numpy as np
 import pytest
 from analysis import made
+from near import near
 from recording.damage import without_checksums
 from rosbags.rosbag2 import Reader, StoragePlugin
 from rosbags.rosbag2 import Writer as ForeignWriter
 from rosbags.typesys import Stores, get_typestore
 
+from rigid_body_sim.analysis import resimulate
 from rigid_body_sim.analysis.rerun import Rerun
 from rigid_body_sim.analysis.resimulate import main
 from rigid_body_sim.analysis.source import sources
@@ -254,3 +257,68 @@ def test_bad_input_is_one_line(case, tmp_path, commanded, capsys):
     assert main([str(path), *more]) == 2
     error = capsys.readouterr().err
     assert said in error and error.count('\n') == 1
+
+
+SAME = {'namespace': '/', 'identical': True, 'messages': 20, 'states': 5, 'not_compared': [],
+        'unpromised': [], 'good': True, 'tolerance': 1e-9, 'parting': None, 'largest': {}}
+OTHER = SAME | {
+    'identical': False, 'good': False,
+    'parting': {'tick': 7, 'time': 0.07, 'quantity': 'angular_velocity', 'recorded': [1.0, 0.25],
+                'resimulated': [1.0, 0.5]},
+    'largest': {'angular_velocity': {'difference': 0.25, 'since_start': 0.08}}}
+PARTS = ['differs from tick 7 on (t = 0.07 s), angular velocity:', '  recorded    1.0, 0.25',
+         '  resimulated 1.0, 0.5',
+         '  largest difference of angular velocity: 2.500e-01, 0.08 s after the start']
+
+
+@pytest.mark.parametrize(('found', 'changed', 'said'), [
+    (SAME, False, ['identical, 5 states (20 messages)']),
+    (SAME | {'namespace': '/left', 'unpromised': ['x']}, True,
+     ['/left: identical, 5 states (20 messages)']),
+    (SAME | {'not_compared': ['energy']}, False,
+     ['identical in 3 of 4 topics, 5 states (20 messages)', '  not compared: energy (not recorded '
+      'under this name, or played again without all of its messages)']),
+    (OTHER, False, PARTS), (OTHER | {'namespace': '/left'}, True,
+                            [f'/left: as expected, {PARTS[0]}', *PARTS[1:]]),
+    (OTHER | {'unpromised': ['another machine']}, True, [f'as expected, {PARTS[0]}', *PARTS[1:]]),
+    *[(OTHER | {'unpromised': ['another machine'], 'good': good}, False,
+       [*PARTS, '  bits are not promised: another machine',
+        f'  allowed are 1.0e-09 rad: the differences are {than}'])
+      for good, than in ((True, 'less'), (False, 'more than that explains'))]])
+def test_the_outcome_is_told_in_words(found, changed, said):
+    assert resimulate.lines(found, changed) == said
+
+
+@pytest.mark.parametrize(('difference', 'changed', 'unpromised', 'allowed', 'good'), [
+    (None, False, [], None, True), (1e-12, False, [], None, False), (1e-12, True, [], None, True),
+    (1.0, True, [], None, True), (1e-12, False, ['x'], None, True),
+    (0.1, False, ['x'], None, False), (0.1, False, ['x'], 0.11, True),
+    (0.1, False, [], 0.11, False), (1e-12, False, ['x'], 0.0, False)])
+def test_a_run_is_reproduced_to_the_bit_or_within_what_is_allowed(
+        difference, changed, unpromised, allowed, good, monkeypatch):
+    monkeypatch.setattr(resimulate, 'broken_promises', lambda rerun: unpromised)
+    monkeypatch.setattr(resimulate.about, 'run_of', lambda simulation: {})
+    rerun = types.SimpleNamespace(recorded={'method': 'dop8', 'accuracy': 1e-9}, simulation=None)
+    differs = difference is not None
+    comparison = types.SimpleNamespace(
+        parting={'tick': 3} if differs else None, messages=8, ticks=4, turned=10.0,
+        topics={'pose': '/pose'},
+        largest={'orientation': {'difference': difference, 'since_start': 0.5, 'scale': 1.0}}
+        if differs else {})
+    found = resimulate.verdict(
+        types.SimpleNamespace(namespace='/'), rerun, comparison, changed, allowed)
+    assert (found['good'], found['identical']) == (good, not differs)
+    assert found['not_compared'] == ['angular_velocity', 'energy', 'angular_momentum_squared']
+
+
+def test_the_tolerance_is_the_accuracy_that_was_asked_and_round_off_of_the_turns():
+    """Ten times the accuracy that was asked; a closed form has round-off only."""
+    def allowed(method, turned, accuracy=1e-6):
+        return resimulate.tolerance(
+            types.SimpleNamespace(recorded={'method': method, 'accuracy': accuracy}),
+            types.SimpleNamespace(turned=turned))
+    assert allowed('exact', 0.0) == 1e-12
+    assert allowed('dop8', 0.0) == near(1e-5 + 1e-12, rel=1e-12)
+    # 64 units of 2**-52 for each radian
+    assert allowed('exact', 2.0**40) == near(2.0**(6 - 52 + 40) + 1e-12, rel=1e-12)
+    assert allowed('dop8', 2.0**40, 1e-3) == near(1e-2 + 2.0**-6 + 1e-12, rel=1e-12)

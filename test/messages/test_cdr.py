@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.cdr import decode, encode
 from rigid_body_sim.messages.definitions import parse, schema
 
@@ -163,3 +164,22 @@ def test_a_length_beyond_the_end_is_not_a_shorter_value():
         decode(schema('std_msgs/msg/String'), 'std_msgs/msg/String', b'\0\1\0\0\3\0\0\0ab')
     with pytest.raises(BadInput, match='x claims 3 elements'):
         decode(parse('a/msg/B', 'uint8[] x'), 'a/msg/B', b'\0\1\0\0\3\0\0\0ab')
+
+
+@pytest.mark.parametrize(('kind', 'value'), [
+    ('bool', True), ('byte', 255), ('char', 255), ('int8', -128), ('uint8', 255),
+    ('int16', -32768), ('uint16', 65535), ('int32', -2**31), ('uint32', 2**32 - 1),
+    ('int64', -2**63), ('uint64', 2**64 - 1), ('float32', 1.5), ('float64', -math.pi)])
+def test_every_primitive_stands_at_a_multiple_of_its_size(kind, value, monkeypatch):
+    """After one byte, so many zeros are left that the size is reached; numpy knows the sizes."""
+    monkeypatch.setattr(cdr, 'schema',
+                        lambda name: parse(name, f'uint8 first\n{kind}[] then\n{kind} last\n'))
+    wanted = np.array(value, {'byte': 'u1', 'char': 'u1'}.get(kind, kind)).tobytes()
+    data = encode('pkg/msg/T', {'first': 1, 'then': [value, value], 'last': value})
+    head = b'\1\0\0\0' + b'\2\0\0\0'    # the sequence has two
+    assert data == cdr.ENCAPSULATION + head + 3 * wanted
+    monkeypatch.setattr(cdr, 'schema',
+                        lambda name: parse(name, f'uint8 first\n{kind} last\n'))
+    data = encode('pkg/msg/T', {'first': 1, 'last': value})
+    assert data == cdr.ENCAPSULATION + b'\1' + bytes(len(wanted) - 1) + wanted
+    assert decode(cdr.schema('pkg/msg/T'), 'pkg/msg/T', data) == {'first': 1, 'last': value}

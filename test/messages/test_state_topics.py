@@ -267,3 +267,22 @@ def test_transform_is_the_pose():
     assert transform['child_frame_id'] == 'racket'
     assert list(transform['transform']['translation'].values()) == STATE.position.tolist()
     assert list(transform['transform']['rotation'].values()) == STATE.orientation.tolist()
+
+
+@pytest.mark.parametrize('scene', ['tennis_racket', 'kater_pendulum_from_p'])
+def test_bytes_of_a_topic_are_the_same_whatever_else_is_published(scene):
+    """All numbers of a tick stand in one row: no topic writes where another one reads."""
+    scene, alone, outputs = load_scene(scene), [], []
+    for output in state_topics.OUTPUTS.values():
+        try:
+            made = TickMessages([output], scene, FRAMES)
+        except BadInput:    # it has no meaning for the scene
+            continue
+        outputs.append(output)
+        alone += made.messages(STATE.vector[None], [0.1], [0.2], [STAMP])[0]
+    assert len(outputs) > 8
+    for several in (outputs, outputs[::-1]):
+        [together] = TickMessages(several, scene, FRAMES).messages(
+            STATE.vector[None], [0.1], [0.2], [STAMP])
+        assert dict(zip([one.name for one in several], together, strict=True)) == dict(
+            zip([one.name for one in outputs], alone, strict=True))

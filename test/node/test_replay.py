@@ -259,3 +259,162 @@ def test_the_bar_shows_how_much_has_been_played_unless_it_is_hidden(hidden, show
     ReplayNode._show(types.SimpleNamespace(
         _progress=bar, _started=5_000_000_000, player=types.SimpleNamespace(now=17_345_678_901)))
     assert seen == shown
+
+
+@pytest.mark.parametrize(('depth', 'kept'), [(1, [b'3']), (2, [b'2', b'3']), (0, [b'3'])])
+def test_who_comes_late_gets_the_latched_messages_from_before_the_start(depth, kept):
+    """As many as the depth, of those with an earlier time; a depth of 0 was not recorded."""
+    from rigid_body_sim.node.replay_node import ReplayNode
+    sent, asked = [], []
+
+    def publisher(durability):
+        return types.SimpleNamespace(
+            qos_profile=types.SimpleNamespace(durability=durability, depth=depth),
+            handle=types.SimpleNamespace(publish_raw=sent.append))
+
+    def messages(names, end):
+        asked.append((names, end))
+        return (types.SimpleNamespace(data=data) for data in (b'1', b'2', b'3'))
+    stands_for = types.SimpleNamespace(
+        _recording=types.SimpleNamespace(messages=messages),
+        _sending={'/scene': publisher(DurabilityPolicy.TRANSIENT_LOCAL),
+                  '/pose': publisher(DurabilityPolicy.VOLATILE)})
+    ReplayNode._publish_latched(stands_for, ['/pose', '/scene'], 500)
+    assert sent == kept and asked == [(['/scene'], 499)]
+
+
+@pytest.mark.parametrize(('loop', 'ended', 'told'), [
+    (False, True, '70 messages on 2 topics, 1.500 s; timing error p50 12, p99 345, max 6789 us'),
+    (True, False, '70 messages on 2 topics in 3 loops, 1.500 s, ended at 0.25 s; timing error '
+     'p50 12, p99 345, max 6789 us')])
+def test_the_report_is_in_seconds_and_microseconds(monkeypatch, loop, ended, told):
+    from rigid_body_sim.node import replay_node
+    lines = []
+    monkeypatch.setattr(replay_node, 'tell', lines.append)
+    player = types.SimpleNamespace(
+        failure=None, published=70, loops=3, seconds=1.5, now=5_250_000_000,
+        lateness=types.SimpleNamespace(
+            summary=lambda: {'p50': 12e-6, 'p99': 345e-6, 'max': 6.789e-3}))
+    stands_for = types.SimpleNamespace(
+        player=player, _recording=types.SimpleNamespace(start_time=5 * SECOND),
+        _sending={'/pose': None, '/scene': None},
+        _options=types.SimpleNamespace(json=False, loop=loop))
+    stands_for._played = lambda: replay_node.ReplayNode._played(stands_for)
+    assert replay_node.ReplayNode._report(stands_for, ended) == 0
+    assert lines == [told]
+
+
+@pytest.mark.parametrize(('name', 'kind', 'said'), [
+    ('/a', 'std_msgs/msg/Nothing', 'has messages of std_msgs/msg/Nothing, which is not installed'),
+    ('/a', 'no_msgs/msg/String', 'has messages of no_msgs/msg/String, which is not installed'),
+    ('/a', 'String', 'has messages of String, which is not installed'),
+    ('a', 'std_msgs/msg/String', 'is not the complete name of a topic')])
+def test_a_topic_that_cannot_be_published_is_refused(name, kind, said):
+    from rigid_body_sim.node.replay_node import ReplayNode
+    with pytest.raises(BadInput, match=said):
+        ReplayNode._publisher(types.SimpleNamespace(), Topic(name, kind))
+
+
+@pytest.mark.parametrize(('options', 'begins', 'total', 'clock', 'real_time', 'latched'), [
+    ({}, 5 * SECOND, 12.346, True, True, False),
+    ({'start': 2.25}, 7_250_000_000, 10.096, True, True, True),
+    ({'loop': True, 'topics': ['/a', '/clock'], 'rate': 20.0}, 5 * SECOND, None, False, True,
+     False),
+    ({'rate': 25.0, 'topics': ['/a']}, 5 * SECOND, 12.346, True, False, False)])
+def test_parts_are_made_as_the_options_say(
+        monkeypatch, options, begins, total, clock, real_time, latched):
+    """A recorded clock is played like any other topic; topics without a message are not."""
+    from rigid_body_sim.node import replay_node
+    made = collections.defaultdict(list)
+
+    def keep(name, result=None):
+        return lambda *arguments, **more: made[name].append((*arguments, *more.items())) or result
+    player = types.SimpleNamespace(start=keep('started'))
+    for name, result in (('Reading', 'reading'), ('Player', player), ('tqdm', None),
+                         ('quicken', None), ('ask_for_priority', None)):
+        monkeypatch.setattr(replay_node, name, keep(name, result))
+    monkeypatch.setattr(replay_node.Node, '__init__', keep('node'))
+    publishers = {}
+
+    class Made(replay_node.ReplayNode):
+        answer_all, create_service = keep('answers'), keep('services')
+        _publish_latched = keep('latched')
+
+        def _publisher(self, topic):
+            return types.SimpleNamespace(handle=types.SimpleNamespace(publish_raw=topic.name))
+
+        def create_publisher(self, kind, name, profile):
+            publishers[name] = kind, profile.depth
+            return types.SimpleNamespace(publish=keep('told'))
+
+        def create_timer(self, period, show, clock):
+            made['timers'].append((period, clock.clock_type.name))
+
+        def destroy_node(self):
+            pass
+    topics = {name: types.SimpleNamespace(name=name, count=count)
+              for name, count in (('/a', 3), ('/b', 0), ('/c', 1), ('/clock', 0))}
+    recording = types.SimpleNamespace(
+        topics=topics, start_time=5 * SECOND, end_time=17_345_678_901)
+    wanted = types.SimpleNamespace(**{'start': 0.0, 'loop': False, 'topics': None, 'rate': 1.0,
+                                      'paused': False} | options)
+    stop = types.SimpleNamespace(request='stop', last_resort=None)
+    Made(stop, recording, wanted)
+    names = wanted.topics or ['/a', '/c']
+    assert made['Reading'] == [(recording, names, begins, 17_345_678_901, wanted.loop)]
+    [(reading, publish, tell_clock, *asked)] = made['Player']
+    assert (reading, publish) == ('reading', {name: name for name in names})
+    assert asked == [wanted.rate, False, 'stop']
+    tell_clock(7 * SECOND)
+    assert [message.clock.sec for message, in made['told']] == ([7] if clock else [])
+    # only the latest time counts
+    assert publishers == ({'/clock': (Clock, 1)} if clock else {})
+    assert made['tqdm'] == [(('total', total), ('unit', ' s'), ('disable', None),
+                             ('leave', False))]
+    # below the thread that publishes, which has 10
+    assert made['ask_for_priority'] == [(real_time, 9)]
+    assert [where for *_, where in made['latched']] == ([begins] if latched else [])
+    assert made['timers'] == [(replay_node.PROGRESS_PERIOD, 'STEADY_TIME')]
+    assert made['started'] == [()]
+
+
+@pytest.mark.parametrize(('failure', 'alive', 'waits'), [
+    (None, False, True), (None, True, False), (ValueError('cut'), False, False)])
+def test_at_its_end_it_waits_a_second_in_all_for_subscribers(monkeypatch, failure, alive, waits):
+    """One that was interrupted, or failed, ends at once."""
+    from rigid_body_sim.node import replay_node
+    now, waited = [50.0], []
+
+    def wait(duration):
+        waited.append(duration.nanoseconds * 1e-9)
+        now[0] += 0.75
+    monkeypatch.setattr(replay_node, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
+    publisher = types.SimpleNamespace(wait_for_all_acked=wait)
+    stands_for = types.SimpleNamespace(
+        player=types.SimpleNamespace(failure=failure, is_alive=lambda: alive, stop=lambda: None,
+                                     join=lambda: None),
+        _progress=types.SimpleNamespace(close=lambda: None), _report=lambda ended: ended,
+        _sending=dict.fromkeys('abc', publisher))
+    assert replay_node.ReplayNode.close(stands_for) is not alive
+    assert waited == pytest.approx([1.0, 0.25, 0.0] if waits else [], abs=1e-9)
+
+
+def test_the_clock_is_in_seconds_and_nanoseconds():
+    from rigid_body_sim.node.replay_node import _clock_message
+    told = _clock_message(1_700_000_000_999_999_999).clock
+    assert (told.sec, told.nanosec) == (1_700_000_000, 999_999_999)
+
+
+@pytest.mark.parametrize(('data', 'called', 'said'), [
+    (True, 'pause', 'paused at 2.25 s'), (False, 'resume', 'playing at 2.25 s')])
+def test_a_pause_is_begun_and_ended_and_its_place_is_told(data, called, said):
+    from rigid_body_sim.node.replay_node import ReplayNode
+    calls = []
+    player = types.SimpleNamespace(pause=lambda: calls.append('pause'),
+                                   resume=lambda: calls.append('resume'), now=7_250_000_000)
+    stands_for = types.SimpleNamespace(
+        player=player, _recording=types.SimpleNamespace(start_time=5 * SECOND))
+    stands_for._played = lambda: ReplayNode._played(stands_for)
+    response = ReplayNode._pause(stands_for, types.SimpleNamespace(data=data),
+                                 types.SimpleNamespace())
+    assert (response.success, response.message, calls) == (True, said, [called])

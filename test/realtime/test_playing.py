@@ -33,7 +33,7 @@ class Read:
 @pytest.fixture
 def play(monkeypatch):
     """Return a function that plays: (Player, when each message was sent, what /clock told)."""
-    def play(reading, rate=1.0, paused=False, stop_at=None, cost=0):
+    def play(reading, rate=1.0, paused=False, stop_at=None, cost=0, resume_at=None):
         clock, sent, told = types.SimpleNamespace(now=MS), [], []
         asked = []
 
@@ -42,6 +42,8 @@ def play(monkeypatch):
             assert seconds <= 0.01
             if stop_at is not None and clock.now >= stop_at:
                 player.stop()
+            if resume_at is not None and clock.now >= resume_at:
+                player.resume()
 
         def publish(data):
             sent.append(clock.now - MS)
@@ -51,8 +53,10 @@ def play(monkeypatch):
         monkeypatch.setattr(playing, 'ask_for_priority', asked.append)
         ended = []
         player = Player(reading, {'/a': publish},
-                        lambda time: told.append((clock.now - MS, time)), rate, paused,
+                        lambda time: told.append((clock.now - MS, time)), rate, paused is True,
                         lambda: ended.append(1))
+        if paused == 'later':
+            player.pause()
         player.run()
         assert player.failure is None and ended == [1]
         return player, sent, told, asked
@@ -88,6 +92,21 @@ def test_at_another_rate_instants_and_clock_are_stretched(play, rate, sent, told
 def test_a_loop_begins_where_time_goes_back(play):
     player, sent, _, _ = play(Read(*((k * MS, k % 3 * MS) for k in range(8))))
     assert (player.loops, player.published, sent) == (3, 8, [k * MS for k in range(8)])
+
+
+def test_messages_of_one_instant_are_of_one_loop(play):
+    player, sent, _, _ = play(Read((0, 0), (0, 0), (3 * MS, 3 * MS), (3 * MS, 3 * MS)))
+    assert (player.loops, player.published, sent) == (1, 4, [0, 0, 3 * MS, 3 * MS])
+
+
+@pytest.mark.parametrize('paused', [True, 'later'])
+def test_after_a_pause_it_goes_on_as_if_no_time_had_passed(play, paused):
+    """A pause is looked at every 10 ms: one that ends after 25 ms has ended after 30 ms."""
+    player, sent, told, _ = play(Read((0, 50 * MS), (3 * MS, 53 * MS), start=50 * MS),
+                                 paused=paused, resume_at=26 * MS, stop_at=200 * MS)
+    assert sent == [30 * MS, 33 * MS] and player.seconds == 0.003
+    assert told[:3] == [(10 * k * MS, 50 * MS) for k in range(3)]
+    assert told[-1] == (33 * MS, 150 * MS)
 
 
 def test_of_no_messages_there_is_no_loop(play):

@@ -55,6 +55,7 @@ def snapshot(simulation, times, wrench=None, restarted=False):
 def test_the_stage(name):
     server = Server()
     stage = Stage(server, load_scene(name) if name else None)
+    assert not stage.follows    # it is the page that says so
     first = {'unit': stage.unit, 'cell': stage.cell, 'axis': stage.what_axis}
     if name:
         # the trials of a body on a plane take minutes in plain Python

@@ -121,7 +121,9 @@ def test_the_spring_is_as_slow_as_the_longest_delay(speed, between, tick, lag, b
     monkeypatch.setattr(Source, 'tick', tick)
     source.speed, one.panel.strength.value, paces = speed, 1.0, []
     monkeypatch.setattr(hand, 'pace_of', lambda *of: paces.append(of) or 1.0)
-    source.left = [moment(between, False)]
+    source.left = [moment(5.0)]
+    one.turn()
+    source.left = [moment(5.0 + between, False)]
     one.mouse.pulls['a'] = Pull(np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.0]))
     one.turn()
     assert paces == [(pytest.approx(10.0), speed, pytest.approx(lag))]
@@ -223,6 +225,28 @@ def test_numbers_are_shown_five_times_a_second(ball, monkeypatch):
         clock[0] += 1.0 / 16.0
         one.turn()
     assert drawn == [50.25, 50.5, 50.75]
+    one._numbers_due = clock[0]    # at once where it is due
+    one.turn()
+    assert len(drawn) == 4
+
+
+@pytest.mark.parametrize('follows', [True, False])
+def test_of_two_recordings_the_first_is_followed_and_the_other_one_moves_with_it(
+        ball, monkeypatch, follows):
+    one, _, _ = ball
+    seen = []
+
+    def stage(name):
+        return types.SimpleNamespace(
+            show=lambda snapshot, *held: seen.append((name, snapshot)),
+            move_with=lambda other: seen.append((name, other)))
+    first, second = stage('first'), stage('second')
+    monkeypatch.setattr(one, '_stages', [first, second])
+    monkeypatch.setattr(one, '_beside', lambda: 'beside')
+    monkeypatch.setitem(one._shown, 'follow', follows)
+    one._show()
+    assert seen == [('first', one.snapshot), ('second', 'beside'), ('second', first)]
+    assert (first.follows, second.follows) == (follows, False)
 
 
 @pytest.mark.parametrize('port', [-1, page.LAST_PORT + 1])

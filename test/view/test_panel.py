@@ -7,10 +7,11 @@ import types
 
 import numpy as np
 import pytest
+from near import near
 
 from rigid_body_sim.scene.effects.wrench import Wrench
-from rigid_body_sim.scene.scene import load_scene
-from rigid_body_sim.view import panel
+from rigid_body_sim.scene.scene import load_scene, parse_scene
+from rigid_body_sim.view import panel, parameters
 from rigid_body_sim.view.panel import EDIT_AFTER, EVENTS, Panel
 from rigid_body_sim.view.snapshots import Snapshot
 
@@ -38,7 +39,7 @@ class Gui:
     """Keeps the controls that it is asked for, by their names."""
 
     def __init__(self):
-        self.controls = {}
+        self.controls, self.folders = {}, {}
 
     def _add(self, name, options=(), **settings):
         self.controls[name] = Control(name, options=options, **settings)
@@ -49,7 +50,8 @@ class Gui:
     def add_html(self, content):
         return Control('', content=content)
 
-    def add_folder(self, name, **settings):
+    def add_folder(self, name, expand_by_default=True):
+        self.folders[name] = expand_by_default
         return contextlib.nullcontext()
 
 
@@ -90,6 +92,39 @@ def test_a_person_who_moves_the_time_seeks_and_the_panel_itself_does_not(made):
     assert one.curves is None    # a recording has no ledger
 
 
+@pytest.mark.parametrize(('end', 'step'), [(4.0, 0.002), (0.0, 1e-9), (1e-7, 1e-9)])
+def test_the_time_has_two_thousand_steps_or_those_of_a_nanosecond(made, end, step):
+    _, controls = made(plays=True, end=end, marks=[])
+    assert controls['time (s)'].settings['step'] == near(step, rel=1e-12)
+
+
+def test_the_strength_of_the_mouse_goes_from_a_hundredth_to_a_hundred(made):
+    one, controls = made(pushes=True)
+    settings = controls['strength (log10)'].settings
+    assert one.strength is controls['strength (log10)'] and one.strength.value == 0.0
+    assert (settings['min'], settings['max'], settings['step']) == (-2.0, 2.0, 0.1)
+
+
+def test_what_is_not_needed_at_first_is_folded(made):
+    one, _ = made(pushes=True, edits=True, scene=load_scene('heavy_top'))
+    assert one._server.gui.folders == {'Push with the mouse': True, 'Conservation': True,
+                                       'Show': False, 'Scene': False, 'Events': False}
+
+
+def test_numbers_of_a_changed_scene_are_put_into_the_controls_that_there_are(made):
+    scene = load_scene('heavy_top')
+    one, controls = made(edits=True, scene=scene)
+    one._scene_folder = contextlib.nullcontext()
+    one.begin(scene, 'a top', 0.5)
+    before = dict(controls)
+    assert before['spin (rad/s)'].value == near(60.0, rel=1e-12)    # that of the scene
+    one.begin(parse_scene(parameters.changed(scene.text, ('body', 'mass'), 0.75)), 'a top', 0.5)
+    assert controls['body.mass'] is before['body.mass']
+    assert controls['body.mass'].value == 0.75
+    for name, control in before.items():
+        assert controls[name] is control
+
+
 def test_a_preset_moves_the_camera_of_the_page_that_asks(made):
     clients = {name: types.SimpleNamespace(
         atomic=contextlib.nullcontext, camera=types.SimpleNamespace(aspect=2.0, position=None))
@@ -97,6 +132,9 @@ def test_a_preset_moves_the_camera_of_the_page_that_asks(made):
     _, controls = made(clients)
     controls['camera'].set('front', client='a')
     assert np.array_equal(clients['a'].camera.position, panel.PRESETS['front'])
+    # it looks at the middle of the picture, and up is up
+    assert clients['a'].camera.look_at == (0.0, 0.0, 0.0)
+    assert clients['a'].camera.up_direction == (0.0, 0.0, 1.0)
     assert clients['b'].camera.position is None
     controls['camera'].set('side', client=None)
     assert all(np.array_equal(one.camera.position, panel.PRESETS['side'])
@@ -183,7 +221,7 @@ def test_numbers_are_lengths_and_what_is_unknown_is_said_so(made):
     moved.vector[1:5] = 1.0, 0.0, 0.0, 0.0
     beside = moment(5.0)
     beside.vector[1:5] = math.cos(0.5), math.sin(0.5), 0.0, 0.0    # by 1 rad about z
-    beside.vector[8:11] = 1.0, 2.0, 2.0
+    moved.vector[8:11], beside.vector[8:11] = (1.0, 1.0, 1.0), (2.0, 3.0, 3.0)
     one.draw(moved, arrows, {'event': 'flip', 'predicted_period': 2.0, 'measured_period': 2.5,
                              'predicted_rate': 3.0}, beside)
     for value in ('5.000 s', '2.5 J', '7 rad/s', '5 N m s', 'unknown', '0 N m', '1 rad', '3 m'):

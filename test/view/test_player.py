@@ -68,6 +68,11 @@ def test_a_moment_has_the_last_state_before_it_and_what_passed_since_another(pat
     assert [text for _, text in snapshot.events] == [text for at, text in one.marks
                                                   if 0.195 < at <= 0.305]
     assert any('commands' in text for _, text in snapshot.events)
+    # a mark is told with the moment at which it lies, and not again
+    [first] = [at for at, text in one.marks if 'commands' in text]
+    told = [[text for at, text in one.at(*between).events if at == first]
+            for between in ((first, 0.0), (0.305, first))]
+    assert (len(told[0]), told[1]) == (1, [])
     assert one.at(0.195, 0.305).restarted
     assert one.at(-1.0, -2.0).vector[0] == 0.0
 
@@ -156,3 +161,18 @@ def test_it_halts_steps_and_goes_where_it_is_told(path, clock):
     one.tell('pause', False)
     one.tell('reset')
     assert one.poll()[0].time == 0.0
+
+
+def test_beside_another_recording_the_state_is_that_of_the_very_time(path):
+    """Halfway between two ticks it is halfway between their attitudes, and at a tick its own."""
+    one = Player(path)
+    ticks = [one.at(at / RATE + 1e-9, 0.0).vector for at in (10, 11)]
+    moment = one.at(0.1, 0.1)
+    for share in (0.0, 0.25, 0.5, 0.875):
+        vector = moment.vector.copy()
+        vector[0] = ticks[0][0] + share * (ticks[1][0] - ticks[0][0])
+        found = one.beside_of(moment._replace(vector=vector)).vector
+        assert found == pytest.approx(snapshots.state_between(*ticks, share), abs=1e-12)
+    assert not np.allclose(*ticks, atol=1e-3)
+    vector[0] = one.end + 1.0    # beyond its end it stays where it was
+    assert (one.beside_of(moment._replace(vector=vector)).vector == one._vectors[-1]).all()
