@@ -67,6 +67,7 @@ soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files
 	    test/numerics test/integrators test/motions test/scene test/choice test/simulation test/view test/sweeps test/theory test/test_extending.py
 	.venv/bin/python bench/choice_random.py --count 300
 	.venv/bin/python bench/choice_random.py --slowing --count 100
+	.venv/bin/python bench/choice_random.py --let-go --count 100
 	.venv/bin/python bench/plane_random.py --count 100
 	@$(MAKE) --no-print-directory mutants
 

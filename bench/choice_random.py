@@ -2,7 +2,7 @@
 """What `auto` promises on random scenes: error, expected error and ledger beside a truth.
 
     .venv/bin/python bench/choice_random.py [--seed 11] [--count 300] [--first 0] [--keep FILE]
-                                            [--new | --slowing]
+                                            [--new | --slowing | --let-go]
 
 Scenes are drawn from the whole scene language (random_scenes/draw.py): bodies from slim to nearly
 symmetric, all constraints, gravity along any direction, several torques, drag of numbers and
@@ -39,7 +39,7 @@ import tempfile
 import time
 
 import numpy as np
-from random_scenes import new_language, slowing
+from random_scenes import let_go, new_language, slowing
 from random_scenes.draw import drawn
 from random_scenes.wide import WIDE
 
@@ -58,6 +58,8 @@ def main():
                         help="scenes of effects in the scene's own words only")
     parser.add_argument('--slowing', action='store_true',
                         help='scenes of bodies that come to rest only')
+    parser.add_argument('--let-go', action='store_true',
+                        help='scenes of bodies that begin at rest only')
     parser.add_argument('--only', choices=KINDS, help='the scenes that one process runs')
     options = parser.parse_args()
     if np.finfo(WIDE).nmant < 63:
@@ -83,7 +85,8 @@ def _both(options, keep):
         each.append(subprocess.Popen(
             [sys.executable, __file__, '--only', kind, '--keep', str(keep), '--seed',
              str(options.seed), '--count', str(options.count), '--first', str(options.first),
-             *['--new'] * options.new, *['--slowing'] * options.slowing], env=settings))
+             *['--new'] * options.new, *['--slowing'] * options.slowing,
+             *['--let-go'] * options.let_go], env=settings))
     for process in each:
         process.wait()
 
@@ -92,7 +95,7 @@ def _run(options):
     """Run the scenes of one kind that are not kept yet, and keep them."""
     from random_scenes.judge import judged
     results = _kept(options.keep, options.seed)
-    draw = (slowing.drawn if options.slowing else
+    draw = (slowing.drawn if options.slowing else let_go.drawn if options.let_go else
             new_language.drawn if options.new else drawn)
     for number in range(options.first, options.first + options.count):
         if number in results or _kind(draw(number, options.seed)[0]) != options.only:

@@ -19,6 +19,7 @@ from rigid_body_sim.simulation.simulation import Simulation
 
 ACCURACIES = 1e-6, 1e-11
 LOOKS = 64               # as often as a trial of `auto`: dense output errs between steps
+STOPPED = 0.5            # share of its largest rate below which a body has lost what it gained
 LONGEST = 120            # s of the processor, a scene with its compilation
 LONGEST_IN_PYTHON = 600  # without compilation
 LONGEST_TRUTH = 1800     # the truth of a scene
@@ -51,8 +52,9 @@ def known(scene, duration):
         truth.to(float(end))
         attitudes.append(truth.y[0, :4].astype(WIDE))
         fastest = max(fastest, truth.rate)
-        # a rate that the body has gained counts from the start on
-        turned = truth.turned if truth.rate < first else fastest * float(end)
+        # a rate that the body has gained and keeps counts from the start on
+        slow = truth.rate < max(first, STOPPED * fastest)
+        turned = truth.turned if slow else fastest * float(end)
         floors.append(max(truth.floor(), HALF_ULP * (4.0 + turned)))
     return times, attitudes, max(floors), float(truth.jumped)
 

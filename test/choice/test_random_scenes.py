@@ -14,9 +14,11 @@ BENCH = pathlib.Path(__file__).resolve().parents[2] / 'bench'
 SCENES = {2: 'a ball on a table', 205: 'drag by matrices'}
 IN_WORDS = {2: 'dissipation at a pivot'}
 SLOWING = {56: 'dry friction of a hinge'}
+LET_GO = {21: 'stopped by a torque'}
 if SOAK:    # three to ten seconds of plain Python each
     SCENES |= {166: 'dry friction of a hinge', 172: 'gravity along a vector'}
     IN_WORDS |= {0: 'a moving pivot', 186: 'a swing whose velocity nearly vanishes'}
+    LET_GO |= {8: 'a torsion spring', 32: 'a short pulse at a pivot', 0: 'a potential'}
     SLOWING |= {37: 'drag of a hinge, to rest', 6: 'dry friction of a hinge that rests for long'}
 
 
@@ -52,6 +54,14 @@ def test_so_it_is_for_bodies_that_come_to_rest(judge, number):
     """The rounding foretold is that of the angle turned, not of the largest rate times time."""
     from random_scenes import slowing
     for line, *good in judge.judged(number, 1, slowing.drawn):
+        assert all(good), line
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('number', LET_GO, ids=LET_GO.values())
+def test_so_it_is_for_bodies_that_begin_at_rest(judge, number):
+    from random_scenes import let_go
+    for line, *good in judge.judged(number, 1, let_go.drawn):
         assert all(good), line
 
 
