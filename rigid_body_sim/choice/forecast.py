@@ -61,10 +61,9 @@ def later(scene, states, errors, longer):
     """Return the error (rad) at a time beyond a run, from its errors at looks.
 
     It grows in proportion to time, as the number of steps does, or to the angle that a body turns
-    which heat slows. Where a drive makes a body turn
-    ever faster, errors go with the angle that it turns, or with a power of it up to the square:
-    then those of the momentum, which add up, turn the body. What the errors did in the second half
-    of the run tells the power.
+    which heat slows. Where a drive makes a body turn ever faster, errors go with the angle that it
+    turns, or with a power of it up to the square: then those of the momentum, which add up, turn
+    the body. What the errors did in the second half of the run tells the power.
 
     Parameters
     ----------

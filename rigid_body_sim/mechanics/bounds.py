@@ -2,8 +2,9 @@
 """Bounds of the rates of a scene, from its potentials and drives, and of the angle turned."""
 
 import math
+from bisect import bisect_right
 from functools import reduce
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from operator import add
 
 from rigid_body_sim.compilation.jit import compiled
@@ -64,11 +65,20 @@ def passed(scene, time, potential):
     potential : float
         As above, J.
     """
-    pushed = reduce(add, (
-        torque * (end - begin) for bounds in _bounds(scene)
-        for (begin, torque), (end, _) in pairwise(bounds.pieces) if end <= time), 0.0)
-    momentum = max(pushed, swing_momentum(scene, potential))
+    times, impulses = _given(scene)
+    momentum = max(impulses[bisect_right(times, time)], swing_momentum(scene, potential))
     return 0.5 * momentum * momentum / _largest_moment(scene), momentum
+
+
+@kept
+def _given(scene):
+    """Return the times at which torques jump (s), and what all gave before each of them (N m s).
+
+    The impulses are one more: the last one is that behind the last time.
+    """
+    ended = sorted((end, torque * (end - begin)) for bounds in _bounds(scene)
+                   for (begin, torque), (end, _) in pairwise(bounds.pieces))
+    return [end for end, _ in ended], [*accumulate((one for _, one in ended), initial=0.0)]
 
 
 @kept
@@ -93,6 +103,7 @@ def drive(scene, wrench):
     return torque / _least_moment(scene) if torque > 0.0 else 0.0
 
 
+@kept
 def drives(scene):
     """Return the bound that `drive` gives as it changes in time: (time, acceleration) from 0 on.
 
@@ -109,7 +120,8 @@ def _torque_at(bounds, time):
     """Return the largest torque (N m) of a drive just after a time (s)."""
     if not bounds.pieces:
         return bounds.torque
-    return next((torque for begin, torque in reversed(bounds.pieces) if begin <= time), 0.0)
+    place = bisect_right(bounds.pieces, (time, math.inf)) - 1
+    return bounds.pieces[place][1] if place >= 0 else 0.0
 
 
 def _least_moment(scene):
@@ -171,6 +183,7 @@ def angles_turned(times, rates, first, out):
             out[k] += (mean + max(0.0, mean - first)) * (times[j + 1] - times[j])
 
 
+@kept
 def _bounds(scene):
     return [effect.bounds(scene.body, scene.constraint) for effect in scene.effects
             if effect.bounds is not None]
