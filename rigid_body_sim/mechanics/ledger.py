@@ -48,6 +48,12 @@ def entries_size(scene):
     return ENTRIES_SIZE + (len(HEATS) if on_plane else 0)
 
 
+def most(passed, entries):
+    """Return the largest energy (J) and angular impulse (N m s) of entries, and of some before."""
+    work, dissipated, impulse = ENTRIES.load(entries.tolist())
+    return max(passed[0], abs(work), abs(dissipated)), max(passed[1], hypot3(*impulse))
+
+
 def balance(start, now, entries, passed=(0.0, 0.0)):
     """Return the balance of energy (J) and angular momentum (kg m^2/s), as a dict of floats.
 

@@ -25,7 +25,7 @@ from rigid_body_sim.errors import BadInput, Ended, NotConverged
 from rigid_body_sim.mechanics import energy, impulse, parameters
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.bounds import passed
-from rigid_body_sim.mechanics.ledger import balance, entries_size
+from rigid_body_sim.mechanics.ledger import balance, entries_size, most
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.scene import yaml_text
 from rigid_body_sim.scene.constraints.protocol import Mechanism
@@ -258,7 +258,8 @@ class Simulation:
         self._initial = previous._initial
         span, now = previous._spans[-1], previous.time
         given = span.given + span.solver.entries(now)
-        self._spans = [self._span(now, previous.vector.copy(), span.wrench, span.strikes, given)]
+        self._spans = [self._span(now, previous.vector.copy(), span.wrench, span.strikes, given,
+                                  most(span.passed, given))]
         self._arrive()
 
     def _restart(self):
@@ -285,9 +286,9 @@ class Simulation:
         self._spans, self._commands, self._foreseen = spans, None, NOTHING_FORESEEN
         self._told_end = False
 
-    def _span(self, time, start, wrench, strikes, given):
+    def _span(self, time, start, wrench, strikes, given, passed):
         """Return a Span from a state (14 doubles) on."""
-        return Span(time, self.choice.solver(start, wrench), wrench, strikes, given, start)
+        return Span(time, self.choice.solver(start, wrench), wrench, strikes, given, start, passed)
 
     def copy(self) -> 'Simulation':
         """Return an independent simulation at the same tick, which goes on with the same bits.
@@ -311,7 +312,8 @@ class Simulation:
             choice.settled,
         )
         spans = [
-            (span.time, span.start, span.wrench, span.strikes, span.given) for span in self._spans
+            (span.time, span.start, span.wrench, span.strikes, span.given, span.passed)
+            for span in self._spans
         ]
         return _restored, (made, spans, {name: getattr(self, name) for name in KEPT})
 
@@ -741,7 +743,8 @@ class Simulation:
         span = self._spans[-1]
         given, now = span.given + span.solver.entries(self.time), self._diagnose()
         potential = max(abs(float(row[energy.POTENTIAL])) for row in (self._initial, now))
-        return balance(self._initial, now, given, passed(self.scene, self.time, potential))
+        on_the_way = map(max, span.passed, passed(self.scene, self.time, potential))
+        return balance(self._initial, now, given, tuple(on_the_way))
 
     def _diagnose(self):
         if self._diagnosed_tick != (self.tick, len(self._spans)):
@@ -785,7 +788,8 @@ class Simulation:
                 impulse.add_entries(given.response, entries)
             kept = [
                 *kept,
-                self._span(time, given.after.copy(), commands.wrench, last.strikes, entries),
+                self._span(time, given.after.copy(), commands.wrench, last.strikes, entries,
+                           most(last.passed, entries)),
             ]
         self._spans = kept
         try:

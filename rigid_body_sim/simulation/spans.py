@@ -30,15 +30,18 @@ class Event:
 class Span:
     """A stretch of the motion that one solver covers, up to the next impulse, hold or strike.
 
-    `given` has the entries of the ledger up to the start (mechanics/ledger.py). `start` is
-    the state (14 doubles) from which the solver was started.
+    `given` has the entries of the ledger up to the start (mechanics/ledger.py), `passed` the
+    largest energy (J) and angular impulse (N m s) of those at the starts so far: what is pushed
+    and stopped again passes through them. `start` is the state (14 doubles) from which the solver
+    was started.
     """
 
-    __slots__ = ('_looked_until', '_told', 'given', 'solver', 'start', 'strikes', 'time', 'wrench')
+    __slots__ = ('_looked_until', '_told', 'given', 'passed', 'solver', 'start', 'strikes', 'time',
+                 'wrench')
 
-    def __init__(self, time, solver, wrench, strikes, given, start):
+    def __init__(self, time, solver, wrench, strikes, given, start, passed=(0.0, 0.0)):
         self.time, self.solver, self.wrench, self.strikes = time, solver, wrench, strikes
-        self.given, self.start = given, start
+        self.given, self.start, self.passed = given, start, passed
         self._told, self._looked_until = [], time
 
     def events(self, after, until, tick):

@@ -5,6 +5,7 @@ import numpy as np
 
 from rigid_body_sim.errors import BadInput, Ended
 from rigid_body_sim.mechanics import impulse
+from rigid_body_sim.mechanics.ledger import most
 from rigid_body_sim.scene.state import STATE_SIZE
 from rigid_body_sim.simulation.admission import LARGEST_WORK
 from rigid_body_sim.simulation.spans import Span
@@ -55,7 +56,8 @@ class Strikes:
                 solver = NoMotion(last.solver.name, at, str(fault))
             else:
                 solver = choice.solver(struck, last.wrench)
-            last = Span(at, solver, last.wrench, last.strikes + 1, given, struck)
+            last = Span(at, solver, last.wrench, last.strikes + 1, given, struck,
+                        most(last.passed, given))
             spans = [*spans, last]
         return spans
 

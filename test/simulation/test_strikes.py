@@ -59,6 +59,9 @@ def test_entries_of_the_ledger_add_up_from_span_to_span():
     assert [span.given.tolist() for span in found] == [
         pytest.approx([total] * entries_size(coasting_scene()), abs=1e-9)
         for total in (0.0, 1.0, 3.5)]
+    # the energy and the length of the impulse
+    assert [span.passed for span in found] == [
+        pytest.approx((total, total * 3.0 ** 0.5), abs=1e-9) for total in (0.0, 1.0, 3.5)]
 
 
 def test_a_strike_that_is_late_acts_where_the_motion_goes_on():
