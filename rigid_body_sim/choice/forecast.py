@@ -8,7 +8,13 @@ import numpy as np
 
 from rigid_body_sim.choice.comparison import lengths
 from rigid_body_sim.choice.measured import makes_heat
-from rigid_body_sim.mechanics.bounds import angles_turned, drive, unbounded
+from rigid_body_sim.mechanics.bounds import (
+    angles_turned,
+    drive,
+    drives,
+    pushed_unbounded,
+    unbounded,
+)
 from rigid_body_sim.numerics.functions import log, power
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
@@ -90,8 +96,9 @@ def turned_later(scene, states, longer):
     """Return the angle that a body has turned by a later time over that at the end of a run.
 
     It grows in proportion to time, unless heat slows the body: then it goes on at the largest rate
-    of the last quarter of the run, and where that is less than the one of the quarter before, each
-    quarter of this length to come has the same share of the last.
+    of the last quarter of the run. Where that is less than the one of the quarter before, and
+    nothing keeps the body turning, each quarter of this length to come has the same share of the
+    last.
 
     Parameters
     ----------
@@ -110,10 +117,16 @@ def turned_later(scene, states, longer):
     turned = np.empty(n)
     angles_turned(np.arange(1.0, n + 1.0), rates, math.inf, turned)
     yet = longer - 1.0
-    if last < before:
+    if last < before and _comes_to_rest(scene):
         yet = min(yet, 0.25 * last / (before - last))
     # the first rate counts up to the first look, too
     return min(longer, 1.0 + yet * n * last / float(turned[-1] + rates[0]))
+
+
+def _comes_to_rest(scene):
+    """Return whether nothing pushes a body for ever; inner heat leaves it a rotation."""
+    return (drives(scene)[-1][1] == 0.0 and not pushed_unbounded(scene)
+            and scene.inner_dissipation == 0.0)
 
 
 def _spin_up(scene, states):

@@ -445,14 +445,17 @@ class Trial:
     def _later(self, states, errors):
         """Return the error (rad) at the horizon after those of a run.
 
-        Its part since the last change tells it, too: what acts then goes on.
+        Its part since the last change tells it, too: what acts then goes on, and adds to the error
+        that the run has by then.
         """
         last, since = forecast.later(self._scene, states, errors, self._longer), self._changes[-1]
         if since == 0.0 or self._longer == 1.0 or self._sees_no_end:
             return last    # no more is known
         part = self._times > since
         longer = (self._horizon - since) / (float(self._times[-1]) - since)
-        return max(last, forecast.later(self._scene, states[part], errors[part], longer))
+        before = float(errors[~part].max(initial=0.0))
+        own = np.maximum(errors[part] - before, 0.0) if before < math.inf else errors[part]
+        return max(last, before + forecast.later(self._scene, states[part], own, longer))
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""

@@ -90,6 +90,8 @@ def test_errors_of_a_body_sped_up_from_rest(errors, longer, expected):
 
 
 SLOWER = 'drag: {linear: 0, angular: 1.0}'
+GOES_ON = math.exp(-4.0 * runs.looks(1.0)[3 * runs.QUARTER])
+OVER = 'torque: {times: [0, 1], values: [[0, 0, 1], [0, 0, 0]], frame: body}'
 
 
 @pytest.mark.parametrize(('rates', 'effects', 'expected'), [
@@ -100,6 +102,13 @@ SLOWER = 'drag: {linear: 0, angular: 1.0}'
     (lambda t: np.exp(-4.0 * t), [SLOWER], 1.0 / -math.expm1(-4.0)),
     # half of the angle is still to come
     (lambda t: np.exp(-math.log(2.0) * t), [SLOWER], 2.0),
+    # so it is behind a torque that is over; under one that lasts, or with heat inside, it goes on
+    # at the largest rate of the last quarter
+    (lambda t: np.exp(-4.0 * t), [SLOWER, OVER], 1.0 / -math.expm1(-4.0)),
+    (lambda t: np.exp(-4.0 * t), [SLOWER, DRIVE], 1.0 + 99.0 * GOES_ON / 0.2454),
+    (lambda t: np.exp(-4.0 * t), [SLOWER, UNBOUNDED], 1.0 + 99.0 * GOES_ON / 0.2454),
+    (lambda t: np.exp(-4.0 * t), ['internal_dissipation: {coefficient: 0.1}'],
+     1.0 + 99.0 * GOES_ON / 0.2454),
     # one that slows down to a rate goes on at it: 0.5 of 2.75 in each run to come
     (lambda t: np.where(t < 0.5, 5.0, 0.5), [SLOWER], 1.0 + 99.0 * 0.5 / 2.75),
     # one that is as fast in the last quarter as before is not taken to slow down

@@ -38,11 +38,12 @@ def at(angle, rate=3.0, velocity=0.0):
 
 
 @pytest.mark.parametrize(('at', 'horizon', 'blind'), [
-    (7.0, 100.0, False), (9.53, 100.0, False), (9.54, 100.0, True), (12.0, 100.0, True),
+    (7.0, 100.0, False), (9.47, 100.0, False), (9.48, 100.0, True), (12.0, 100.0, True),
     (8.99, 9.0, False)])
 def test_behind_the_end_of_a_trial_nobody_knows_what_a_change_does(at, horizon, blind,
                                                                    monkeypatch):
-    """Four of 64 looks after the last change tell how it goes on: up to 61/64 of ten trials.
+    """Four of 64 looks after the last change tell how it goes on: the fourth last one of ten
+    trials is at 9.477.
 
     So it is unless the trial goes to the horizon.
     """
@@ -64,8 +65,8 @@ def test_after_a_change_errors_go_on_as_they_do_since_then(monkeypatch):
     since = np.maximum(0.0, one._times - 8.0)
     states = np.zeros((runs.LOOKS, 14))
     states[:, 7] = since
-    # three times the time since then: nine times the angle
-    assert one._later(states, since ** 2) == near(9.0 * 64.0, rel=1e-6)
+    # three times the time since then: nine times the angle; half of the looks end near 12 s
+    assert one._later(states, since ** 2) == near(9.0 * 64.0, rel=0.03)
     one._longer = 1.0
     assert one._later(states, since ** 2) == 64.0
 
@@ -385,7 +386,7 @@ def test_the_momenta_of_a_run_are_formed_once(tried, monkeypatch):
     tried._scene, tried._runs = coasting_scene(), {HERE: at(1e-9), HERE / 2.0: at(0.0)}
     for _ in range(2):
         tried._apart(HERE, HERE / 2.0)
-    assert formed == [runs.LOOKS] * 2
+    assert formed == [1, runs.LOOKS, runs.LOOKS]    # first that of the start
 
 
 def test_the_finer_run_is_the_finest_that_work_allows(tried, monkeypatch):
