@@ -42,8 +42,9 @@ def at(angle, rate=3.0, velocity=0.0):
     (8.99, 9.0, False)])
 def test_behind_the_end_of_a_trial_nobody_knows_what_a_change_does(at, horizon, blind,
                                                                    monkeypatch):
-    """Four of 64 looks after the last change tell how it goes on: the fourth last one of ten
-    trials is at 9.477.
+    """Four of 64 looks after the last change tell how it goes on.
+
+    The fourth last one is at 0.948 of ten trials.
 
     So it is unless the trial goes to the horizon.
     """
