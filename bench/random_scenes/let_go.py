@@ -2,7 +2,7 @@
 """Random scenes of bodies that begin at rest: let go, or turned by a torque and stopped again.
 
 Nothing at the start tells how fast they will turn, and springs, potentials and expressions have no
-bounds. Every second torsion spring swings so often that even looks would see it turn back only.
+bounds. Half of the torsion springs swing so often that even looks would see them turn back only.
 """
 
 import json
@@ -60,7 +60,7 @@ def _pulses(chance, momentum, period):
     """Return a torque that gives a body a momentum (kg m^2/s) and takes it back; its end, s."""
     gap = period * chance.between(0.1, 3.0)
     long = gap * chance.between(SHORTEST, 1.0)
-    # about one axis of the body it turns to where it is stopped; about any other it tumbles
+    # a body that is pushed about one of its axes is at rest again in the end; any other tumbles on
     push = [0.0, 0.0, 0.0]
     push[chance.randrange(3)] = momentum / long
     if chance.random() < 0.3:

@@ -119,13 +119,13 @@ def line(predicted, measured):
     (found_of(accuracy_missed=['a < b']), False, ' <b>Note:</b> a &lt; b. 500'),
     (found_of(stretches=2, levels=[{'begun_by': ''}, {'begun_by': 'strike'},
                                    {'begun_by': 'reset'}, {'begun_by': 'strike'}]), True,
-     '<b>Kept within each of 2 stretches:</b> energy to 1.0e-16 and L² to 1.0e-16 (relative, '
-     'which is round-off). It is changed by resets and strikes between them. 500'),
+     '<b>Kept within each of 2 stretches:</b> energy to 1.0e-16 and L² to 1.0e-16 '
+     '(relative, which is round-off). It is changed by resets and strikes between them. 500'),
     # L² alone is kept
     (found_of(stretches=2, levels=[{'begun_by': ''}, {'begun_by': 'parameters'}]) | {
         'energy': {'largest_residual': None, 'stretches': 0, 'levels': []}}, True,
-     '<b>Kept within each of 2 stretches:</b> L² to 1.0e-16 (relative, which is round-off). It is '
-     'changed by changes of parameters between them. 500'),
+     '<b>Kept within each of 2 stretches:</b> L² to 1.0e-16 (relative, which is round-off). It '
+     'is changed by changes of parameters between them. 500'),
     (found_of(lines=[line(2.0, 2.002), line(3.0, None)]), True,
      ' 1 predicted frequency was measured, within 1.0e-03.'),
     (found_of(lines=[line(2.0, 1.99), line(4.0, 4.004)]), True,

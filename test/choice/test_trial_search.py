@@ -68,6 +68,8 @@ def test_after_a_change_errors_go_on_as_they_do_since_then(monkeypatch):
     states[:, 7] = since
     # three times the time since then: nine times the angle; half of the looks end near 12 s
     assert one._later(states, since ** 2) == near(9.0 * 64.0, rel=0.03)
+    # what the run has from before is not multiplied again: it grows with the whole run
+    assert one._later(states, np.full(runs.LOOKS, 5.0)) == 10.0
     one._longer = 1.0
     assert one._later(states, since ** 2) == 64.0
 
@@ -378,6 +380,17 @@ def test_momenta_count_a_tenth_and_velocities_of_a_body_that_flies_too(tried):
     assert apart(4, 8).max() == 0.0
     tried._flies = True
     assert apart(4, 8) == near([1e-6] * runs.LOOKS, rel=1e-5)
+
+
+def test_shares_of_what_rests_by_the_first_look_are_those_of_the_start(tried):
+    """It turned at 3 rad/s, and 1e-17 are left; then it moved at 2 m/s, twice what is left."""
+    tried._scene = coasting_scene()
+    tried._runs = {HERE: at(0.0, 1e-17, 1.0), HERE / 2.0: at(0.0, 3e-17, 1.0 + 1e-5)}
+    assert tried._apart(HERE, HERE / 2.0) == near([2e-18 / 3.0] * runs.LOOKS, rel=1e-9)
+    tried._flies, (momentum, speed) = True, tried._at_start
+    assert speed == 0.0
+    tried._at_start = momentum, 2.0
+    assert tried._apart(HERE, HERE / 2.0) == near([5e-7] * runs.LOOKS, rel=1e-5)
 
 
 def test_the_momenta_of_a_run_are_formed_once(tried, monkeypatch):

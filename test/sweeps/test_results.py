@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from near import near
 
+from rigid_body_sim.choice.choose import choose
+from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import PLACES
 from rigid_body_sim.sweeps import results
 from rigid_body_sim.sweeps import spec as specs
@@ -110,6 +112,22 @@ def test_residuals_are_those_of_the_last_time(monkeypatch):
     assert seen == [4.0]
     assert arrays['energy_residual'].tolist() == [0.0, 1.0, 2.0, 3.0]
     assert arrays['momentum_residual'].tolist() == [0.0, -1.0, -2.0, -3.0]
+
+
+@pytest.mark.without_numba
+def test_residuals_of_a_body_that_is_stopped_again_are_those_of_its_way():
+    """Turned for a second and stopped in the next one: both ends are at rest."""
+    scene = parse_scene(
+        'scene: slewed\nbody: {mass: 1, inertia: [0.03, 0.02, 0.01]}\nconstraint: free\n'
+        'effects: [torque: {times: [0, 1, 2], values: [[0, 0, 0.02], [0, 0, -0.02], [0, 0, 0]]}]\n'
+        'initial: {euler_zyz: [0, 0.5, 0]}\n')
+    choice, start = choose(scene, 'dop8', 1e-9), scene.initial.vector[np.newaxis]
+    ends = np.empty((1, 1, 14))
+    choice.many(start, np.array([3.0]), ends)
+    found, = results._residuals(scene, choice, start, ends[:, 0], 3.0)
+    # measured: 2e-33 and 7e-17; beside the two ends they were of order 1
+    assert abs(found['energy_residual']) < 1e-8
+    assert found['momentum_residual'] < 1e-8
 
 
 def test_some_runs_of_a_block_are_kept_at_their_places():
