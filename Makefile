@@ -74,8 +74,10 @@ soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files
 test-machines: .venv/test.stamp ## the bits as on other machines: processors, C library, BLAS, NumPy, Pythons, ARM64 emulated; docs/machines.md anew
 	.venv/bin/python test/machines.py; good=$$?; .venv/bin/python docs/make_machines.py && exit $$good
 
-test-orders: .venv/test.stamp ## pytest in three random orders
-	for seed in 1 2 3; do .venv/bin/$(PYTEST) --random-order --random-order-seed=$$seed || exit 1; done
+test-orders: .venv/test.stamp ## pytest in three random orders, each with NumPy and its BLAS as on an older processor
+	for one in 1:Prescott 2:Nehalem 3:Haswell; do \
+	    OPENBLAS_CORETYPE=$${one#*:} NPY_DISABLE_CPU_FEATURES='X86_V3 X86_V4 AVX512_ICL AVX512_SPR' \
+	    .venv/bin/$(PYTEST) --random-order --random-order-seed=$${one%:*} || exit 1; done
 
 test-cold: .venv/test.stamp ## each test file alone, with an empty cache of compiled kernels: hours
 	.venv/bin/python test/cold.py
