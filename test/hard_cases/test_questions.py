@@ -14,7 +14,7 @@ from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
-from rigid_body_sim.study.hard_cases import beside, contact
+from rigid_body_sim.study.hard_cases import beside, contact, questions
 from rigid_body_sim.study.hard_cases.sliding_ball import MASS, A, G
 from rigid_body_sim.study.hard_cases.table import CASES
 
@@ -139,6 +139,56 @@ def test_what_a_peer_says_is_told_in_a_few_words():
     assert asked(NotConverged('no  step\nis small enough', 0.0)).startswith(
         'fails: no step is small')
     assert asked(KeyError(91 * 'x')) == f"fails: KeyError: '{89 * 'x'}"
+
+
+def spun(*rates):
+    """Return a peer whose body has a rate about each axis at a share of the time that it runs.
+
+    `rates` are functions of the time.
+    """
+    def runners(problem, reference):
+        run = types.SimpleNamespace(time=0.0, start=lambda: None)
+        run.to = lambda time: setattr(run, 'time', time)
+        run.state = lambda: [0.0, 0.0, 0.0, 1.0, *(rate(run.time) for rate in rates)]
+        yield types.SimpleNamespace(control='step', make=lambda setting: run)
+    return types.SimpleNamespace(runners=runners)
+
+
+def still(time):
+    return 0.0
+
+
+THREE = '''scene: three
+body: {mass: 1, inertia: [1, 2, 3]}
+constraint: free
+effects: []
+initial: {angular_velocity: [2, 0, 0]}
+'''
+
+
+@pytest.mark.parametrize(('turning', 'ended', 'expected'), [
+    # w^2/3 is in excess about the first axis, and nothing about the third; the start has 2 J
+    ((lambda t: 2.0 - 0.1 * t, still, still), False, 0.0),
+    ((lambda t: 2.0 - 0.1 * t, still, still), True, 1.9**2 / 6.0),
+    ((lambda t: 2.0 + (t > 0.5), still, still), False, 5.0 / 6.0),
+    ((lambda t: 2.0 + (t > 0.5) - 2.0 * (t > 0.8), still, still), True, 5.0 / 6.0),
+    ((still, still, lambda t: t), True, 0.0)])
+def test_the_excess_may_not_rise_nor_stay_where_it_must_have_ended(turning, ended, expected):
+    """The largest rise counts, as a share of the energy of the start; the rest at the end, too."""
+    scene = parse_scene(THREE)
+    found = questions.never_rises(scene, 1.0, ended).ask(spun(*turning))
+    # of energies beside 2 J; measured 1e-16
+    assert found == pytest.approx(expected, rel=0.0, abs=1e-15)
+
+
+def test_an_omega_that_must_stay_and_one_that_must_leave_are_told_by_the_axis_and_the_time():
+    scene = parse_scene(THREE)
+    moved = spun(lambda t: 2.0, lambda t: -0.5 * t, lambda t: 0.25 * t)
+    assert questions.stays(scene, 4.0).ask(moved) == near(2.0, rel=1e-15)
+    # (2 w2)^2 + (3 w3)^2 = (1 + 0.5625) t^2 is 1 at 0.8 s; looks are 4/399 s apart
+    late = questions.leaves(scene, 4.0, 0.75).ask(moved)
+    assert 0.05 <= late <= 0.05 + 4.0 / 399
+    assert questions.leaves(scene, 0.79, 0.75).ask(moved) == 'never leaves'
 
 
 SHOTS = [name for name in ASKED if name[0] == '7']
