@@ -158,12 +158,12 @@ def still(time):
     return 0.0
 
 
-THREE = '''scene: three
+THREE = """scene: three
 body: {mass: 1, inertia: [1, 2, 3]}
 constraint: free
 effects: []
 initial: {angular_velocity: [2, 0, 0]}
-'''
+"""
 
 
 @pytest.mark.parametrize(('turning', 'ended', 'expected'), [
