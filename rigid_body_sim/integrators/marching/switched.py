@@ -3,9 +3,9 @@
 
 Between two kinks every switch (scene/effects/protocol.py, Acting) keeps its side, which the
 kernels are given as a number, so what they compute is smooth there. The switches are looked at
-several times in each step of the march; where one has changed its sign, the time of that is
-located to round-off on the march itself, and a new march starts there. So no step crosses a kink,
-and a method keeps its order.
+several times in each step of the march; where one has changed its sign, or has done so for a while
+between two looks (dips.py), the time of that is located to round-off on the march itself, and a
+new march starts there. So no step crosses a kink, and a method keeps its order.
 
 A body on a hinge with dry friction comes to rest when its rate passes zero under a torque that the
 friction balances, and stays until the torque outgrows it.
@@ -22,6 +22,7 @@ from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.euler import INVERSE
 from rigid_body_sim.integrators.marching import sides
 from rigid_body_sim.integrators.marching.course import Course
+from rigid_body_sim.integrators.marching.dips import dip
 from rigid_body_sim.integrators.marching.points import (
     FIXED,
     ORIGIN,
@@ -37,6 +38,7 @@ LOOKS = 4                    # looks in one step, at least
 TURNED = 1.0                 # rad, at most between two looks at a body on a hinge that winds
 DEAR = 100                   # steps that cost as much as the looks of one
 STALLS = 4                   # marches that end where they begin: then a body slides along a kink
+NEAR = 4.0                   # changes between looks: within them a switch may be left in between
 SHORTEST, LONGEST = 2.0 ** -20, 2.0 ** -4    # s, between two looks at a body at rest
 CALM, BRISK = 0.01, 0.1      # share of the friction by which a torque changes between two looks
 FIRST = 2.0 ** -7            # s, the step of a body that breaks loose
@@ -237,6 +239,7 @@ class Switched:
                                        tuple(modes), rests, head))
         self._begins.append(begin)
         self._seen, self._spacing = begin, SHORTEST
+        self._margins_seen = ()    # at the last two looks of the stretch
 
     def _tried(self, vector, modes, k, head):
         """Return the side to which a switch goes that begins on its kink; 0 where it stays."""
@@ -264,8 +267,14 @@ class Switched:
             time = end if share == looks else self._seen + (end - self._seen) * (share / looks)
             if not time > before:
                 continue
-            if self._changed(course, stretch, time, out):
-                self._cross(course, stretch, before, time)
+            margins, left = self._margins(course, stretch, time, out), None
+            if min(margins) < 0.0:
+                left = time
+            elif _are_near(margins, *self._margins_seen[::-1]):
+                left = dip(lambda at: self._margins(course, stretch, at, out), before, time)
+            self._margins_seen = (*self._margins_seen[-1:], margins)
+            if left is not None:
+                self._cross(course, stretch, before, left)
                 return
             before = time
         self._seen = end
@@ -283,14 +292,23 @@ class Switched:
         turned = rate * (end - self._seen)
         return max(LOOKS, math.ceil(turned / TURNED)) if math.isfinite(turned) else LOOKS
 
-    def _changed(self, course, stretch, time, out):
-        """Return the switches that have left their sides at a time of a stretch."""
+    def _margins(self, course, stretch, time, out):
+        """Return how far the switches are on their sides at a time of a stretch: below 0 beyond.
+
+        `out` is filled with the state. Of a body at rest it is what friction could bear yet.
+        """
         course.state(time, out)
         if stretch.rests:
-            return [-1] if abs(self._pull(out)) > self._bound.equations.grip else []
+            return [self._bound.equations.grip - abs(self._pull(out))]
         found = self._sides(out, stretch.modes)
-        return [k for k, (side, mode) in enumerate(zip(found, stretch.modes, strict=True))
-                if (side * mode < 0.0 if mode != 0.0 else side != 0.0)]
+        return [side * mode if mode != 0.0 else -abs(side)
+                for side, mode in zip(found, stretch.modes, strict=True)]
+
+    def _changed(self, course, stretch, time, out):
+        """Return the switches that have left their sides at a time of a stretch."""
+        left = [k for k, margin in enumerate(self._margins(course, stretch, time, out))
+                if margin < 0.0]
+        return [-1] if stretch.rests and left else left
 
     def _cross(self, course, stretch, low, high):
         """Enter the stretch after the first kink between two times."""
@@ -345,3 +363,22 @@ class Switched:
             f'{self._method.NAME} on {self._scene.name}: at t = {time!r} s the body slides along '
             'a kink, where what acts drives it back from both sides; at a hinge that is '
             'dry_friction, elsewhere a smooth function like tanh would do', time)
+
+
+def _are_near(now, before=None, earlier=None):
+    """Return whether one of some switches may be left and back between two looks.
+
+    It changes by little between looks where it is far from zero.
+
+    Parameters
+    ----------
+    now, before, earlier : list of float
+        Margins at the last three looks, as far as there are.
+    """
+    if earlier is None:
+        return True
+    for k, last in enumerate(now):
+        one, other = before[k], earlier[k]
+        if min(last, one) <= NEAR * max(abs(last - one), abs(one - other)):
+            return True
+    return False

@@ -231,6 +231,7 @@ def test_a_switch_that_begins_on_its_kink_goes_where_the_march_drives_it(
 def test_a_switch_has_left_its_side_where_its_sign_is_the_other_one(modes, sides, left):
     """A zero is on both sides, and one that stays on its kink leaves it either way."""
     of = types.SimpleNamespace(_sides=lambda out, given: sides if given == modes else None)
+    of._margins = types.MethodType(Switched._margins, of)
     stretch = types.SimpleNamespace(rests=False, modes=modes)
     course = Course(lambda time: 0.0)
     assert Switched._changed(of, course, stretch, 1.0, np.empty(STATE_SIZE)) == left
@@ -311,6 +312,31 @@ def test_a_switch_is_looked_at_each_quarter_of_a_step_and_at_its_end(place):
     of = Made(Course(lambda time: time), [lambda v: abs(v[8] - place) - 0.1])
     assert of.kinks(3.0) == [pytest.approx(place - 0.1, abs=4e-16),
                              pytest.approx(place + 0.1, abs=4e-16)]
+
+
+@pytest.mark.parametrize('wide', [1e-2, 1e-5, 1e-8])
+@pytest.mark.parametrize('place', [0.12, 0.62, 1.9, 2.26])
+def test_a_switch_that_is_back_at_the_next_look_is_seen(place, wide):
+    """It is below zero for a while between two looks. A double at the place has 2e-16."""
+    of = Made(Course(lambda time: time), [
+        lambda v: (v[8] - place - wide) * (v[8] - place + wide) * (1.0 + v[8])])
+    assert of.kinks(3.0) == [pytest.approx(place - wide, abs=1e-15),
+                             pytest.approx(place + wide, abs=1e-15)]
+
+
+@pytest.mark.parametrize('place', [0.12, 0.62, 1.9, 2.26])
+def test_a_switch_that_all_but_reaches_zero_between_two_looks_stays(place):
+    of = Made(Course(lambda time: time), [lambda v: (v[8] - place) ** 2 + 1e-15])
+    assert of.kinks(3.0) == []
+
+
+@pytest.mark.parametrize('over', [1e-3, 1e-6, 1e-9])
+def test_a_torque_that_outgrows_friction_between_two_looks_sets_a_body_free(over):
+    """Looks at rest are 1/64 s apart at most; the torque is beyond for 4 sqrt(over) s."""
+    of = Made(Course(lambda time: 0.0, lambda time: 0.0), [lambda v: v[7]],
+              lambda v: 1.0 + over - 0.25 * (v[0] - 2.0203) ** 2, grip=1.0,
+              gripping=(0,), in_field=True)
+    assert of.kinks(3.0)[0] == pytest.approx(2.0203 - 2.0 * math.sqrt(over), abs=1e-9)
 
 
 @pytest.mark.parametrize(('hinge', 'winds'), [
