@@ -157,6 +157,18 @@ def borne(scene):
     return grip / moment_about_hinge(scene.body, scene.constraint) if grip > 0.0 else 0.0
 
 
+def cancelling(scene, horizon):
+    """Return the angular acceleration of terms that may cancel each other, rad/s^2.
+
+    They are potentials, with swing_rate^2 = 4 U/I, and expressions up to a time (s). What is left
+    of them is rounding.
+    """
+    body, constraint, swing = scene.body, scene.constraint, swing_rate(scene)
+    torque = reduce(add, (effect.cancelling(body, constraint, horizon)
+                          for effect in scene.effects), 0.0)
+    return swing * swing + (torque / _least_moment(scene) if torque > 0.0 else 0.0)
+
+
 @compiled
 def angles_turned(times, rates, first, out):
     """Fill out with bounds of the angles (rad) that a body turns up to times, shape (n,).

@@ -20,7 +20,7 @@ from rigid_body_sim.integrators.marching import gauss_march, relaxing, unroll
 from rigid_body_sim.integrators.marching.gauss_nodes import STAGES
 from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
 from rigid_body_sim.integrators.protocols import FINEST  # noqa: F401
-from rigid_body_sim.mechanics.bounds import swing_rate
+from rigid_body_sim.mechanics.bounds import cancelling
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 
 ASKS = {'accuracy': (), 'step': ()}
@@ -146,8 +146,7 @@ def begin(stepped, march):
         part[relaxing.DECAY:relaxing.DECAY + n] = one.rates
     tolerance = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     CONTROL.store(control, Control(tolerance, stepped.step or 0.0, 0.0))
-    swing = swing_rate(stepped.scene)
-    control[march.SWING] = swing * swing
+    control[march.CANCELLING] = cancelling(stepped.scene, stepped.horizon)
     return control, np.zeros(march.KEPT + STAGES * march.SIZE)
 
 

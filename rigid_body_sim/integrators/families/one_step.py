@@ -10,7 +10,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.marching import adaptive, bound, fixed, unroll
 from rigid_body_sim.integrators.marching.points import VALUES, Control
-from rigid_body_sim.mechanics.bounds import borne, swing_rate
+from rigid_body_sim.mechanics.bounds import borne, cancelling
 
 ROUNDING = 2.0 ** -51    # share of the largest angular acceleration
 
@@ -46,9 +46,7 @@ def begin(stepped, march):
     """Return (control, point) of a march, to be copied for each start."""
     point = np.zeros(VALUES + 2 * march.SIZE)
     if stepped.step is None:
-        # the full effect of potentials, swing_rate^2 = 4 U/I, and the friction
-        swing = swing_rate(stepped.scene)
-        rounding = ROUNDING * (swing * swing + borne(stepped.scene))
+        rounding = ROUNDING * (cancelling(stepped.scene, stepped.horizon) + borne(stepped.scene))
         control = Control(stepped.accuracy / stepped.horizon, 0.0, 0.0)
         return np.array([*control, rounding, *unroll.weights(stepped.method)]), point
     return np.array(Control(0.0, stepped.step, 0.0)), point

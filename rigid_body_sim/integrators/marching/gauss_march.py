@@ -5,8 +5,8 @@ A point holds, after its Head (points.py), the unknowns and what their sums lost
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds, after its Control, in SWING the square of the rate that potentials can give
-(rad/s), and from WORK on a workspace S:
+`control` holds, after its Control, in CANCELLING the angular acceleration of terms that may cancel
+(rad/s^2, bounds.py), and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
     RATES       their rates
@@ -92,8 +92,8 @@ CURVE = UNBOUND
 BETWEEN = UNBOUND
 ASIDE = UNBOUND
 
-SWING = CONTROL.size      # places in `control`
-WORK = SWING + 1
+CANCELLING = CONTROL.size      # places in `control`
+WORK = CANCELLING + 1
 
 AGAIN = False            # of relax: the stages are not predicted ones
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
@@ -214,8 +214,8 @@ def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
     allowed : float
         Change at which it is enough.
     pull : float
-        What potentials can do in the step, as a share of the first relative group: their terms
-        may nearly cancel, and leave their rounding.
+        What terms that may cancel do in the step, as a share of the first relative group: where
+        they nearly do, they leave their rounding.
     scales : tuple of floats
         Squared scales.
 
@@ -322,8 +322,8 @@ def _fastest_square(c7, c6, c5, c4, noise):
 
 @compiled
 def _pull(control, h, scales):
-    """Return what potentials can do in a step, as a share of the first relative group."""
-    return control[SWING] * h / math.sqrt(scales[0]) if scales[0] > 0.0 else 0.0
+    """Return what terms that may cancel do in a step, as a share of the first relative group."""
+    return control[CANCELLING] * h / math.sqrt(scales[0]) if scales[0] > 0.0 else 0.0
 
 
 @compiled

@@ -8,10 +8,13 @@ mass. A scene does not list this effect: a pivot with a `motion` implies it.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, path, tree
+from rigid_body_sim.scene.expressions.cancelling import cancelling
+from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.frame import Frame
 
 
@@ -41,6 +44,16 @@ class Carrying(Effect):
         mass = tree.number(-body.mass)
         forces = tuple(tree.times(mass, one) for one in path.accelerations(moving.trees))
         return cls(forces, moving.parameters, body.center_of_mass)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times at which it begins to change after it was constant for long, s."""
+        return onsets(self.trees, self.parameters)
+
+    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
+        """Return the moment of its terms that may cancel, N m."""
+        lever = hypot3(*constraint.arm(body))
+        return cancelling(self.trees, self.parameters, horizon) * lever
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque; there is none about the centre of mass, and none in a fixed frame."""

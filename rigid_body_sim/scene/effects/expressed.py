@@ -10,7 +10,9 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
+from rigid_body_sim.scene.expressions.cancelling import cancelling
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
+from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import described, mapping_of
@@ -67,6 +69,15 @@ class ExpressedTorque(Effect):
         refuse_beside_hinge(trees, constraint, f'{where}.value')
         return cls(trees, settings.get('frame', 'body'), settings.get('books', 'work'),
                    value[0].parameters)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times at which it begins to change after it was constant for long, s."""
+        return onsets(self.trees, self.parameters)
+
+    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
+        """Return the size of its terms that may cancel, N m."""
+        return cancelling(self.trees, self.parameters, horizon)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the couple; one of zero does not act."""

@@ -13,7 +13,9 @@ from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
+from rigid_body_sim.scene.expressions.cancelling import cancelling
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
+from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
 
@@ -76,10 +78,23 @@ class Force(Effect):
         A force fixed in the world turns a free body by its torque only.
         """
         size = hypot3(*(float(one.args[0]) for one in self.trees))
+        torque = size * self._reach(body, constraint)
+        still = constraint.holds_a_point and self.frame == 'world'
+        return Bounds(torque, 0.0) if still else Bounds(0.0, torque)
+
+    def _reach(self, body: Body, constraint: Constraint) -> float:
+        """Return the lever of the force about what is held, or the centre of mass, m."""
         held = constraint.holds_a_point
-        reach = minus(self.at, constraint.point(body) if held else body.center_of_mass)
-        torque = size * hypot3(*reach)
-        return Bounds(torque, 0.0) if held and self.frame == 'world' else Bounds(0.0, torque)
+        return hypot3(*minus(self.at, constraint.point(body) if held else body.center_of_mass))
+
+    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
+        """Return the moment of its terms that may cancel, N m."""
+        return cancelling(self.trees, self.parameters, horizon) * self._reach(body, constraint)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times at which it begins to change after it was constant for long, s."""
+        return onsets(self.trees, self.parameters)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the force and its moment."""

@@ -12,6 +12,7 @@ from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
+from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES, TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
@@ -58,6 +59,11 @@ class Magnetic(Effect):
             most = _size(settings['moment']) * _size([one.text for one in field])
         return cls(tree.negative(vectors.dot(moment, trees)),
                    vectors.cross(fixed, vectors.to_body(trees)), most, field[0].parameters)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times at which it begins to change after it was constant for long, s."""
+        return onsets((self.energy,), self.parameters)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return torque and force."""

@@ -280,7 +280,7 @@ class Effect(Protocol):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Times (s) at which its values jump: a step ends at each."""
+        """Times (s) at which a step ends: its values jump, or it stirs after it was constant."""
         return ()
 
     @property
@@ -362,6 +362,14 @@ class Effect(Protocol):
     @property
     def grip(self) -> float:
         """The torque with which it holds a body on a hinge at rest, N m."""
+        return 0.0
+
+    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
+        """Return the size of terms that may cancel each other up to a time (s), as a torque, N m.
+
+        What is left of them is rounding, which no step is short enough to follow. Potentials that
+        have bounds need not say so.
+        """
         return 0.0
 
     @property
