@@ -368,6 +368,12 @@ def test_a_torque_in_pieces_may_be_booked_as_heat(frame):
         assert [one.books for one in scene.effects[0].acting(scene.frame, 1.0)] == [books]
 
 
+def test_a_wrench_is_held_if_a_part_of_it_is_not_zero():
+    assert not Wrench()
+    assert Wrench(force=(0.0, 1.0, 0.0))
+    assert Wrench(torque=(0.0, 0.0, 1.0))
+
+
 @pytest.mark.parametrize('kind', ['free', 'pivot', 'hinge'])
 @pytest.mark.parametrize('axes', ['world', 'body'])
 def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):

@@ -8,8 +8,16 @@ import pytest
 from near import near
 
 from rigid_body_sim.errors import BadInput
-from rigid_body_sim.scene.effects import sliding_friction
-from rigid_body_sim.scene.effects.protocol import Bounds, Contact, Effect
+from rigid_body_sim.scene.effects import EFFECTS, sliding_friction
+from rigid_body_sim.scene.effects.protocol import (
+    Acting,
+    Bounds,
+    Contact,
+    Effect,
+    Formulas,
+    Pull,
+)
+from rigid_body_sim.scene.expressions.tree import ZERO
 from rigid_body_sim.scene.scene import parse_scene
 
 TENSOR = np.array([[0.3, 0.01, 0.02], [0.01, 0.4, -0.03], [0.02, -0.03, 0.5]])
@@ -164,6 +172,16 @@ def test_without_strength_or_arm_nothing_acts():
     assert later.effects[0].acting(later.frame, 0.0)[0].values == (0.0, 0.0, 0.0)
 
 
+def test_what_acts_has_none_of_the_traits_that_it_does_not_tell():
+    acting = Acting('kernel', (1.0,), 'torque', 'work')
+    assert not any(acting[4:])
+    pull, formulas = Pull(), Formulas((ZERO, ZERO, ZERO))
+    assert (pull.constant, pull.slowing, pull.formulas) == ((0.0, 0.0, 0.0), 0.0, ())
+    assert (pull.force, pull.couple, pull.drag) == (None, None, None)
+    assert (formulas.force, formulas.of_frame) == ((ZERO, ZERO, ZERO), False)
+    assert not any(Contact())
+
+
 def test_the_contract_without_views_says_nothing():
     class Plain(Effect):
         name, SCHEMA, mechanisms = 'plain', {}, ()
@@ -189,6 +207,9 @@ def test_a_component_or_a_piece_that_is_not_zero_acts():
                     'torque: {times: [0, 1], values: [[0, 0, 0], [0, 0, 2]]}'):
         scene = scene_of(effects, 'pivot', above)
         assert len(scene.effects[0].acting(scene.frame, 0.0)) == 1, effects
+    # two moments of a symmetric body do not differ
+    top = scene_of('gravity_gradient: {mu: 5, position: [2, -1, 2]}', 'free', 'inertia: [1, 1, 2]')
+    assert len(top.effects[0].acting(top.frame, 0.0)) == 1
 
 
 @pytest.mark.parametrize('effects', [
@@ -251,3 +272,17 @@ def test_friction_warns_of_painleves_paradox_from_its_bound_on(monkeypatch):
     assert found == [[], [], [True], [True], []]
     # a ball without a surface meets none
     assert warned(scene_of('sliding_friction: {mu: 1.26, g: 9.8}', 'table', ball)) == []
+
+
+TWICE = {
+    'torque': '{value: [1, 0, 0]}', 'force': '{value: [1, 0, 0]}', 'potential': '{energy: qx}',
+    'strike': '{impulse: [1, 0, 0]}', 'magnetic': '{moment: [1, 0, 0], field: [0, 1, 0]}',
+    'spring': '{at: [1, 0, 0], anchor: [0, 0, 0], stiffness: 1}',
+    'rotor': '{axis: [1, 0, 0], momentum: 1}'}
+
+
+@pytest.mark.parametrize('name', EFFECTS)
+def test_some_effects_may_be_listed_twice(name):
+    assert EFFECTS[name].repeatable == (name in TWICE)
+    if name in TWICE:
+        assert len(scene_of(', '.join([f'{{{name}: {TWICE[name]}}}'] * 2)).effects) == 2
