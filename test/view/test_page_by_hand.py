@@ -261,8 +261,8 @@ def test_the_largest_port_and_the_first_address_of_a_host_are_served(monkeypatch
     free, taken = ('127.0.0.1', 0), ('203.0.113.7', 0)    # the latter is of no machine
 
     def addresses(*found):
-        monkeypatch.setattr(page.socket, 'getaddrinfo', lambda host, port, type: [
-            (page.socket.AF_INET, type, 0, '', address) for address in found])
+        monkeypatch.setattr(page.socket, 'getaddrinfo', lambda *_, **asked: [
+            (page.socket.AF_INET, asked['type'], 0, '', address) for address in found])
     made = []
     monkeypatch.setattr(page.viser, 'ViserServer', lambda **asked: made.append(
         asked) or types.SimpleNamespace())
