@@ -77,6 +77,12 @@ def test_the_momentum_that_is_missing_is_relative_to_the_largest(
     assert found['energy_residual'] == 0.0
 
 
+def test_of_a_body_that_nothing_has_moved_nothing_has_passed():
+    found = balance(row(0.5, 0.0, 0.25, (0.0, 0.0, 0.5)), row(0.25, 0.0, 0.0625, (0.0, 0.0, 0.25)),
+                    entries())
+    assert (found['energy_residual'], found['momentum_residual']) == (-0.5, 0.5)
+
+
 def test_a_body_at_rest_lacks_nothing():
     nothing = row(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
     found = balance(nothing, nothing, entries(causes=(1.0, 2.0, 3.0, 4.0, 5.0)))
