@@ -65,6 +65,6 @@ def test_rows_are_at_even_ticks_from_the_first_to_the_last(
         stamps=stamps, start=500_000_000, end=2_500_000_000, entries='the journal')
     times, terms = ledger(source)
     assert Run.made == [('the journal', {}, given)]
-    assert times == pytest.approx(0.1 * np.array(ticks), rel=1e-15)
+    assert times == pytest.approx(0.1 * np.array(ticks), rel=1e-15, abs=0.0)
     assert {term: values.tolist() for term, values in terms.items()} == {
         term: [100.0 * tick + k for tick in ticks] for k, term in enumerate(TERMS)}
