@@ -136,7 +136,7 @@ def test_refusals_are_recorded_and_nan_is_one(racket):
     def gives_up(_):
         raise NotConverged('too far')
     silent = runner.Run(lambda: None, lambda time: None, lambda: [np.nan] * 7)
-    partly = runner.Run(lambda: None, lambda time: None, lambda: [0.0, 0.0, 0.0, 1.0, np.nan, 1, 1])
+    partly = runner.Run(lambda: None, lambda time: None, lambda: [0, 0, 0, 1, np.nan, 1, 1])
     found = measure.measure(*racket,
                             [runner.Runner('no', 'none', (None,), refuses),
                              runner.Runner('silent', 'none', (None,), lambda _: silent),
