@@ -573,5 +573,6 @@ def test_inner_parts_turn_the_axes_until_a_wobble_is_too_small_to_show(
 @pytest.mark.parametrize('g', ['[0, 0, -1.6]', '1.6'])
 def test_a_field_along_minus_z_is_one_that_has_closed_forms(g):
     assert scene_of(f'gravity: {{g: {g}}}', 'free').effects == (Gravity(1.6),)
+    assert scene_of('gravity: {g: [0, 0, 0]}', 'free').effects == (Gravity(0.0),)
     with pytest.raises(BadInput, match=r'gravity\.g: got -0\.1'):
         scene_of('gravity: {g: -0.1}', 'free')
