@@ -59,6 +59,7 @@ WANTED = 0.95
 PATIENCE = 120      # s, a test; the tests next to a change take seconds
 LONGEST = 1800      # s, all tests of a stage
 FEW = 12            # files of tests that import what is changed, and are near
+IN_VAIN = 200       # draws of a kind in a row that give nothing new: it has no more
 AT_FIRST = 15.0     # s, of tests and of digests that run the line, before the others of them
 
 DIGESTS = 'test/test_digests.py::test_without_numba_the_bits_are_the_same'
@@ -303,7 +304,7 @@ def mutants_of(path, root=ROOT, among=None):
 
 
 def drawn(seed, count, folders):
-    """Return `count` mutants, the kinds in turn."""
+    """Return `count` mutants, the kinds in turn as long as they have any."""
     chance, kinds = random.Random(seed), collections.defaultdict(list)
     for folder in folders:
         base = ROOT / folder
@@ -315,12 +316,20 @@ def drawn(seed, count, folders):
     names, found, seen = sorted(kinds), [], set()
     total = sum(map(len, kinds.values()))
     print(f'{total} places, ' + ', '.join(f'{len(kinds[name])} of kind {name}' for name in names))
-    while len(found) < min(count, total):
-        mutant = chance.choice(kinds[names[len(found) % len(names)]])(chance)
+    in_vain = 0
+    while names and len(found) < min(count, total):
+        name = names[len(found) % len(names)]
+        mutant = chance.choice(kinds[name])(chance)
         # some are not even a change of the code: -0.0 for 0.0 in another spelling, a text
         if mutant.source not in seen and mutant.before != mutant.after:
             seen.add(mutant.source)
             found.append(mutant)
+            in_vain = 0
+        else:
+            in_vain += 1
+            if in_vain == IN_VAIN:
+                names.remove(name)
+                in_vain = 0
     return found
 
 

@@ -75,6 +75,12 @@ def test_a_seed_draws_the_same_mutants_and_another_one_others():
         ast.parse(one.source)
 
 
+def test_a_kind_of_which_all_are_drawn_leaves_the_rest_to_the_others():
+    found = mutants.drawn('1', 99, ['rigid_body_sim/node/gaps.py'])
+    assert len({one.source for one in found}) == len(found) == 18
+    assert sorted(one.kind for one in found)[:3] == ['call', 'call', 'comparison']
+
+
 @pytest.mark.parametrize('file', sorted({entry['file'] for entry in TABLE}))
 def test_each_equivalent_mutant_is_still_one(file):
     entries = [entry for entry in TABLE if entry['file'] == file]

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import termios
 import time
+import types
 
 import numpy as np
 import pytest
@@ -22,7 +23,9 @@ from notices import without_notices
 
 from rigid_body_sim.analysis.resimulate import main as resimulate
 from rigid_body_sim.choice.choose import methods_for
+from rigid_body_sim.cli import simulate as module
 from rigid_body_sim.cli.simulate import interruptible, main, simulate
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
@@ -364,3 +367,42 @@ def test_a_run_that_cannot_go_on_keeps_every_tick_before(tmp_path, capsys, effec
     assert capsys.readouterr().err.startswith(line)
     assert Recording(run).topics['/pose'].count == count
     assert resimulate([run]) == 0
+
+
+@pytest.mark.parametrize('name', ['split_bytes', 'split_seconds'])
+def test_files_are_split_by_sizes_up_to_four_billion(name):
+    options = types.SimpleNamespace(split_bytes=0, split_seconds=0, compression='zstd')
+    for size, taken in ((0, True), (4e9, True), (4.001e9, False), (-1, False), (np.nan, False)):
+        setattr(options, name, size)
+        if taken:
+            assert module._writing(options)[name] == size
+            continue
+        with pytest.raises(BadInput, match=f'--{name.replace("_", "-")}'):
+            module._writing(options)
+
+
+def test_a_run_has_at_most_a_billion_ticks(capsys):
+    assert main(['--scene', 'sphere', '--duration', '1000000001', '--rate', '1']) == 2
+    assert 'at most 1e+09 at this rate' in capsys.readouterr().err
+
+
+def test_the_summary_counts_messages_by_the_second(capsys):
+    result = {'state': {'time': 2.5, **{name: [0.5] for name in module.PARTS}},
+              'ledger': {'energy_residual': 1e-15, 'momentum_residual': 2e-16},
+              'method': {'method': 'dop8'}, 'events': {'flip': 3, 'bounce': 1},
+              'cost': {'ticks': 100, 'run': 0.25, 'messages': 300}}
+    module._tell(result, types.SimpleNamespace(name='top'), 'here')
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == 'top by dop8: 100 ticks, t = 2.5 s, in 0.250 s'
+    assert told[1:5] == [f'  {name:17}0.5' for name in module.PARTS]
+    assert told[5:] == ['  energy residual 1.00e-15, angular momentum residual 2.00e-16, '
+                        '1 x bounce, 3 x flip', '  300 messages, 1200 a second: here']
+    module._tell(result, types.SimpleNamespace(name='top'), None)
+    assert capsys.readouterr().out.splitlines() == told[:-1]
+
+
+def test_progress_is_told_in_the_ticks_of_each_block(monkeypatch):
+    monkeypatch.setattr(module, 'BLOCK', 40)
+    done = []
+    simulate(Simulation('sphere', rate=100.0), 100, progress=done.append)
+    assert done == [40, 40, 20]

@@ -15,7 +15,7 @@ from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.study.hard_cases import beside, contact, questions
-from rigid_body_sim.study.hard_cases.sliding_ball import MASS, A, G
+from rigid_body_sim.study.hard_cases.sliding_ball import MASS, A, G, Scipy
 from rigid_body_sim.study.hard_cases.table import CASES
 
 ASKED = {f'{case.group} {case.name}': case for case in CASES if case.asked}
@@ -242,6 +242,43 @@ def test_runge_and_kutta_miss_the_onset_of_rolling_by_a_step(name):
     asked = ASKED[name].asked
     kept.check(f'shot_{name[2:].replace(" ", "_").replace("/", "_")}', [
         asked.time, asked.unit, asked.ask(types.SimpleNamespace(NAME='numba RK4'))])
+
+
+def test_a_ball_without_a_push_is_asked_at_its_start_and_at_its_end(monkeypatch):
+    asked = []
+
+    class Noted:
+        def __init__(self, shot):
+            asked.append(shot)
+
+        def to(self, time):
+            asked.append(time)
+
+        push = to
+
+        def velocities(self):
+            return (3.0, 4.0), (0.0, 0.0)
+    monkeypatch.setitem(contact.PEERS, 'ours', Noted)
+    shot = contact.Shot(0.0, (1.0, 0.0), (0.0, 0.0, 0.0), 0.5, (0.0, 0.0))
+    assert contact.question(shot).ask(peer()) == 5.0
+    assert asked == [shot, 0.0, (0.0, 0.0), 0.5]
+
+
+def test_scipy_slides_a_ball_as_its_formula_says_and_does_not_go_back(monkeypatch):
+    """Before rolling v = v0 - mu g t, a omega_y = 5/2 mu g t."""
+    integrate = pytest.importorskip('scipy.integrate')
+    ball = Scipy(contact.Shot(0.2, (2.0, 0.0), (0.0, 0.0, 0.0), 1.0, (0.0, 0.0)))
+    for time in (0.0, 0.1, 0.05):
+        ball.to(time)
+        assert ball.time == max(time, ball.time)
+    lost = 0.2 * G * 0.1
+    (vx, vy), (wx, wy) = ball.velocities()
+    assert (vx, A * wy) == pytest.approx((2.0 - lost, 2.5 * lost), rel=1e-12, abs=0.0)
+    assert (vy, wx, ball.time) == (0.0, 0.0, 0.1)
+    monkeypatch.setattr(integrate, 'solve_ivp', lambda *_, **more: types.SimpleNamespace(
+        success=False, message='the step is too small'))
+    with pytest.raises(NotConverged, match='the step is too small'):
+        ball.to(0.2)
 
 
 def test_peers_that_are_installed_are_told_from_the_others():

@@ -15,6 +15,7 @@ from near import near
 
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, ENTRIES_SIZE
 from rigid_body_sim.motions import sliding_sphere as motion
+from rigid_body_sim.numerics.ramped_rotation import HALF_STEP
 from rigid_body_sim.numerics.rotations import rotate
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.state import STATE_SIZE
@@ -330,6 +331,59 @@ for time in json.loads(sys.argv[3]):
     states.append(out.tolist())
 print(json.dumps(states))
 """
+
+
+@pytest.mark.parametrize(('velocity', 'spin', 'steps'), [
+    # steps of 2^-52 in the speed v = 1, of which eight for each 1 of |v| + a |omega| are rounding
+    ((1.0, 0.0), (0.0, 2.0, 0.0), 16), ((0.0, 1.0), (-2.0, 0.0, 0.0), 16),
+    ((-1.0, 0.0), (0.0, -2.0, 0.0), 16), ((1.0, 0.0), (0.0, 2.0, 20.0), 88),
+    ((0.0, 1.0), (-2.0, 0.0, -20.0), 88)])
+def test_a_slip_below_the_rounding_of_all_speeds_is_none(velocity, spin, steps):
+    """A ball of radius 0.5 rolls where v = 0.5 omega; eight ulp of the speeds count as none."""
+    for more, slides in ((steps - 2, False), (steps + 3, True)):
+        grown = tuple(part * (1.0 + more * EPSILON) for part in velocity)
+        anchor = anchored(start_of(grown, spin, radius=0.5), (0.5, 0.4, 2.0, 0.2, 9.81))
+        assert (motion.load_slide(anchor).u > 0.0) == slides
+        assert (motion.next_event(anchor, -1.0)[0] < math.inf) == slides
+        assert motion.next_event(anchor, 9.0) == (math.inf, 0)
+
+
+@pytest.mark.parametrize(('velocity', 'spin'), [
+    ((3.0, 1.0), (5.0, -7.0, 30.0)),      # it turns faster at the end
+    ((0.5, -0.2), (90.0, 140.0, 30.0))])    # and at the start
+def test_checkpoints_are_a_step_of_the_series_apart(velocity, spin):
+    """Half the angle turned at the larger rate, in steps of two times HALF_STEP."""
+    anchor = anchored(start_of(velocity, spin))
+    a, k, _, mu, g = BALL
+    slip = np.array([velocity[0] - a * spin[1], velocity[1] + a * spin[0]])
+    duration = k / (1.0 + k) * np.linalg.norm(slip) / (mu * g)
+    turned = mu * g * duration / (k * a) * np.array([-slip[1], slip[0]]) / np.linalg.norm(slip)
+    rates = [np.linalg.norm(spin), np.hypot(np.linalg.norm(spin[:2] + turned), spin[2])]
+    steps = 0.25 * duration * max(rates) / HALF_STEP
+    track = motion.load_track(anchor)
+    assert 1 < track.count == 1 + int(steps) <= motion.CHECKPOINTS
+    assert track.interval == near(duration / track.count, rel=1e-12)
+    assert 1 + int(0.25 * duration * min(rates) / HALF_STEP) < track.count
+
+
+@pytest.mark.parametrize(('velocity', 'spin', 'count'), [
+    ((10.0, 0.0), (0.0, 0.0, 0.0), 1),      # it turns about one axis
+    ((10.0, 0.0), (0.0, 0.0, 1e4), 1),      # fast about another one: nothing is gained
+    # slowly about another one while the rate along the ramp is within reach of 0
+    ((10.0, 0.0), (0.1, 0.0, 0.0), 32), ((10.0, 0.0), (0.1, -200.0, 0.0), 32),
+    ((20.0, 0.0), (0.1, 200.0, 0.0), 1),    # which it has left before,
+    ((10.0, 0.0), (0.1, -3000.0, 0.0), 1)])    # or does not reach
+def test_a_long_slide_has_all_checkpoints_where_it_turns_about_two_axes(velocity, spin, count):
+    anchor = anchored(start_of(velocity, spin))
+    track = motion.load_track(anchor)
+    assert track.count == count
+    assert track.interval == near(motion.load_duration(anchor) / count, rel=1e-15)
+
+
+def test_a_ball_at_rest_neither_slides_nor_turns():
+    anchor = anchored(start_of())
+    assert motion.load_slide(anchor).u == 0.0
+    assert (at(anchor, 2.0)[1:] == start_of()[1:]).all()
 
 
 def test_the_same_without_numba():

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The process of a node, on an executor that is made by hand: what its exit status is."""
 
+import contextlib
 import types
 
 import pytest
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import ExternalShutdownException
+from rclpy.parameter import Parameter
 
 from rigid_body_sim.command_line import BAD_INPUT, CHECK_FAILED, GOOD
+from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.node import process
 
 
@@ -69,3 +73,64 @@ def test_the_status_is_that_of_the_end_or_of_a_callback_that_failed(
     assert len(stop.asked) == 2
     stop.asked[1]()
     assert executor.log[-1] == ('shutdown', 0.0)
+
+
+def stand_in(monkeypatch, settled=('settled',)):
+    """Replace what process.run asks of ROS; return what is called, in order."""
+    called = []
+
+    @contextlib.contextmanager
+    def named(arguments):
+        called.append(('settle', arguments))
+        yield [*settled], {'shared'}
+    monkeypatch.setattr(process.overrides, 'settled', named)
+    monkeypatch.setattr(process.rclpy, 'init', lambda args, **_: called.append(('init', args)))
+    monkeypatch.setattr(process.rclpy, 'try_shutdown', lambda: called.append('shutdown'))
+    monkeypatch.setattr(process, 'set_logger_level', lambda name, level: called.append(level.name))
+    return called
+
+
+@pytest.mark.parametrize(('failure', 'status', 'said'), [
+    (BadInput('scene', 'got x', 'needs y'), BAD_INPUT, 'scene: got x; needs y\n'),
+    (NotConverged('t = 0 s: no\nway'), CHECK_FAILED, 't = 0 s: no'),
+    (process.RCLError('two\n lines'), BAD_INPUT, 'ROS: two lines\n'),
+    (InvalidParameterTypeException(Parameter('rate', value='a'), 'DOUBLE'), BAD_INPUT,
+     "parameter Trying to set parameter 'rate' to 'a'")])
+def test_a_node_that_cannot_be_made_has_a_status_and_one_line(
+        failure, status, said, monkeypatch, capsys):
+    called = stand_in(monkeypatch)
+
+    def make_node(stop, shared):
+        assert shared == {'shared'}
+        raise failure
+    assert process.run(make_node, ['given'], Stop()) == status
+    assert capsys.readouterr().err.startswith(said)
+    assert called == ['FATAL', ('settle', ['given']), ('init', ['', 'settled']), 'UNSET',
+                      'shutdown']
+
+
+@pytest.mark.parametrize('status', [GOOD, CHECK_FAILED])
+def test_a_node_is_destroyed_at_the_end_of_its_turns(status, monkeypatch):
+    called, stop = stand_in(monkeypatch), Stop()
+    node = types.SimpleNamespace(destroy_node=lambda: called.append('destroyed'))
+    monkeypatch.setattr(process, '_spin', lambda *of: called.append(of) or status)
+    assert process.run(lambda *_: node, ['given'], stop) == status
+    assert called[-3:] == [(node, stop), 'destroyed', 'shutdown']
+    stop.last_resort()
+    assert called[-1] == 'shutdown'
+
+
+def test_arguments_that_ros_refuses_are_told_as_they_were_given(monkeypatch, capsys):
+    """First it is asked with the settled ones, whose files the user does not know."""
+    called = stand_in(monkeypatch)
+
+    def refuse(args, **_):
+        called.append(('init', args))
+        raise process.RCLError(f'{args[1]} is\n' + 'long ' * 100)
+    monkeypatch.setattr(process.rclpy, 'init', refuse)
+    assert process.run(None, ['given'], Stop()) == BAD_INPUT
+    said = capsys.readouterr().err
+    assert said.startswith('ROS arguments: given is long long')
+    assert said.endswith('; see --help\n')
+    assert len(said) == len('ROS arguments: ; see --help\n') + 300
+    assert called[2:] == [('init', ['', 'settled']), ('init', ['', 'given'])]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""With which quality of service topics are offered."""
+"""With which quality of service topics are offered, and what is sent on each."""
 
 import types
 
@@ -9,19 +9,23 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from rigid_body_sim.messages import state_topics
 from rigid_body_sim.node import publishing
 from rigid_body_sim.node.publishing import Publishing
+from rigid_body_sim.scene.scene import load_scene
 
 
 class Node:
     """Stands for a node: it keeps the profiles of its publishers, by topic."""
 
     def __init__(self):
-        self.profiles = {}
+        self.profiles, self.sent = {}, []
 
     def create_publisher(self, message_type, topic, profile, **_):
         self.profiles[topic] = profile
         return types.SimpleNamespace(
             topic_name=f'/a/{topic}', qos_profile=profile, handle=types.SimpleNamespace(
-                publish_raw=None))
+                publish_raw=lambda data: self.sent.append((f'/a/{topic}', data))))
+
+    def get_name(self):
+        return 'sim_node'
 
 
 @pytest.mark.parametrize('described', [True, False])
@@ -47,3 +51,34 @@ def test_events_and_the_scene_are_kept_for_late_joiners(monkeypatch, described):
     assert topics['/a/events'].depth == 100 and topics['/a/scene'].depth == 1
     assert topics['/a/scene'].durability == 'transient_local'
     assert made.names()['pose'] == '/a/pose'
+
+
+def test_each_message_goes_to_its_topic_and_into_the_recording(monkeypatch):
+    node, displayed = Node(), []
+    monkeypatch.setattr(publishing, 'Display', lambda *_: types.SimpleNamespace(
+        tick=displayed.append))
+    monkeypatch.setattr(publishing, 'import_type', lambda output: None)
+    outputs = state_topics.chosen(['tf', 'marker', 'odom'])
+    made = Publishing(node, outputs, state_topics.Frames(), 'of the scene', True)
+    assert made.messages == 'of the scene'
+    names = [topic.name for topic in made.every_tick()]
+    assert len(names) == len(outputs.ticking) > 2
+    data = [name.encode() for name in names]
+    made.tick(data)
+    assert node.sent == list(zip(names, data, strict=True)) and displayed == [data]
+    node.sent.clear()
+    others = [topic.name for topic in made.others()]
+    assert others == ['/a/events', '/a/scene', '/a/robot_description', '/a/marker', '/a//tf']
+    assert made.paced([b'shape', b'turn']) == node.sent == [
+        ('/a/marker', b'shape'), ('/a//tf', b'turn')]
+    node.sent.clear()
+    topic, data = made.event(1, 'strike', 'has hit', {'time': 0.5})
+    assert (topic, node.sent) == ('/a/events', [(topic, data)])
+    assert b'strike' in data and b'has hit' in data
+    node.sent.clear()
+    scene = load_scene('tennis_racket')
+    assert made.scene(scene) == node.sent
+    assert [topic for topic, _ in node.sent] == ['/a/scene', '/a/robot_description']
+    assert b'tennis_racket' in node.sent[0][1] and b'<robot' in node.sent[1][1]
+    messages = made.messages_for(scene)
+    assert messages.ticking is not None and messages.paced is not None

@@ -116,4 +116,23 @@ def test_the_line_is_no_wider_than_the_terminal(terminal, monkeypatch, columns):
     assert period == 0.2
     assert drawn.endswith('\r\n') and drawn.count('\n') == 1
     assert len(drawn.rstrip().split('\r')) == 3
-    assert max(map(len, drawn.rstrip().split('\r'))) < columns
+    widest = max(map(len, drawn.rstrip().split('\r')))
+    assert widest == columns - 1 if columns < 100 else widest < columns
+
+
+@pytest.mark.parametrize(('recording', 'told'), [
+    (None, 'nothing'), (types.SimpleNamespace(recorded=1234), '1234')])
+def test_the_line_is_in_seconds_hertz_and_microseconds_and_asks_for_the_next_balance(
+        recording, told, monkeypatch, capsys):
+    monkeypatch.setattr(status_line, 'draws', lambda stream: False)
+    parts, asked = Parts(), []
+    parts.session.want_balance = lambda: asked.append(1)
+    parts.session.balance = {'time': 12.3456, 'energy_residual': 1.5e-9,
+                             'momentum_residual': -2e-16}
+    parts.journal.status = recording
+    StatusLine(parts, parts)
+    parts.timers[0][1]()
+    assert capsys.readouterr().out.split() == (
+        f'sim_node: t 12.346 s 1000.0 Hz late p99 100 us energy 1.5e-09 L^2 -2.0e-16 '
+        f'recorded {told}').split()
+    assert asked == [1]

@@ -42,6 +42,7 @@ def test_messages_of_several_lengths_keep_their_order(frames):
         assert found['pose.orientation'].tolist() == [
             [0.0, 0.0, 0.0, -float(k)] for k in range(count)]
     assert decoder.components['pose.orientation'] == ['x', 'y', 'z', 'w']
+    assert len(decoder._layouts) == len(set(frames))    # each is made once
 
 
 def joints(k, names, positions=()):
@@ -75,3 +76,12 @@ def test_as_many_forms_as_are_taken_and_one_more(monkeypatch):
         assert found['pose.position'][:, 0].tolist() == [0.0, 1.0, 2.0]
     with pytest.raises(BadInput, match='messages of many different forms; decode them'):
         decoded(Decoder(POSE), [pose(k, frame) for k, frame in enumerate(lengths)])
+
+
+def test_without_a_choice_columns_are_those_of_all_messages():
+    """The shorter message has a value more."""
+    status = Decoder('diagnostic_msgs/msg/DiagnosticStatus')
+    found = decoded(status, [{'level': 1, 'name': 'n' * 99},
+                             {'level': 2, 'name': 'a', 'values': [{'key': 'k', 'value': 'v'}]}])
+    assert found['level'].tolist() == [1, 2]
+    assert found.keys() == {'level', 'name'}

@@ -15,8 +15,8 @@ ROWS = np.concatenate(
     [
         np.array(
             [
-                (HOLD, WORLD, 1.0, -0.0, 1e-300, 0.1, 0.2, 0.3),
-                (IMPULSE, BODY, 4.0, 5.0, 6.0, 7.0, 8.0, np.pi),
+                (HOLD, WORLD, 1.1, -0.0, 1e-300, 0.1, 0.2, 0.3),
+                (IMPULSE, BODY, 4.2, 5.0, 6.0, 7.0, 8.0, np.pi),
             ]
         ),
         LET_GO,

@@ -55,3 +55,17 @@ def test_metadata_of_more_than_64_megabytes_is_not_read(tmp_path, monkeypatch):
         monkeypatch.setattr(os.path, 'getsize', lambda _, size=size: size)
         with pytest.raises(BadInput, match=problem):
             files_of(tmp_path)
+
+
+@pytest.mark.parametrize(('mode', 'said'), [
+    ('', None), ('NONE', None), ('storage', None), ('FILE', 'whole files of it are compressed'),
+    ('message', 'whole messages of it are compressed')])
+def test_chunks_may_be_compressed_but_no_whole_files_or_messages(tmp_path, mode, said):
+    (tmp_path / 'metadata.yaml').write_text(
+        f'rosbag2_bagfile_information: {{storage_identifier: mcap, compression_mode: "{mode}", '
+        'relative_file_paths: [b_0.mcap, a/c_1.mcap], custom_data: {a: 1}}\n')
+    if said is None:
+        assert files_of(tmp_path) == ([tmp_path / 'b_0.mcap', tmp_path / 'c_1.mcap'], {'a': '1'})
+        return
+    with pytest.raises(BadInput, match=said):
+        files_of(tmp_path)

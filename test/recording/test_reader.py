@@ -8,6 +8,7 @@ import random
 import resource
 import shutil
 import struct
+import types
 
 import numpy as np
 import pytest
@@ -36,6 +37,7 @@ from soak import SOAK
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.messages import cdr
 from rigid_body_sim.messages.definitions import definition
+from rigid_body_sim.recording import file_reader, reader
 from rigid_body_sim.recording.file_reader import FileReader
 from rigid_body_sim.recording.reader import Recording
 from rigid_body_sim.recording.recover import recover
@@ -499,3 +501,16 @@ def test_a_sequence_of_another_length_in_a_later_chunk_is_no_column(tmp_path):
         assert 'position' not in found
         assert found['velocity'].tolist() == [[float(k)] for k in range(40)]
         assert opened.read('/x', end=START + 9)['position'].shape == (10, 1)
+
+
+def test_a_recording_lasts_from_its_first_file_that_holds_anything_to_its_last(monkeypatch):
+    files = {name: types.SimpleNamespace(
+        channels={}, counts=counts, start_time=first, end_time=last)
+        for name, counts, first, last in (
+            ('a', {1: 2}, 30, 60), ('b', {}, 0, 0), ('c', {1: 1}, 20, 70), ('d', {1: 1}, 25, 50))}
+    monkeypatch.setattr(file_reader, 'FileReader', files.get)
+    monkeypatch.setattr(Recording, '_about', lambda self, custom: custom)
+    for names, span in (('abcd', (20, 70)), ('ab', (30, 60)), ('b', (0, 0))):
+        monkeypatch.setattr(reader, 'files_of', lambda path, names=names: ([*names], {}))
+        opened = Recording('a folder')
+        assert (opened.start_time, opened.end_time) == span

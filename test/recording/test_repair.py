@@ -2,12 +2,19 @@
 """What is said of a mended file, and where the file goes that was there before."""
 
 import errno
+import fcntl
 import os
 import pathlib
+import types
 
 import pytest
 
-from rigid_body_sim.recording.repair import Recovered, _Beside
+from rigid_body_sim.errors import BadInput
+from rigid_body_sim.messages import cdr
+from rigid_body_sim.recording import repair
+from rigid_body_sim.recording.repair import Recovered, _Beside, recover_file
+from rigid_body_sim.recording.topics import Topic, journal_topic
+from rigid_body_sim.recording.writer import Writer
 
 X = pathlib.Path('x.mcap')
 
@@ -64,3 +71,66 @@ def test_what_was_written_beside_a_file_goes_if_it_did_not_take_its_place(tmp_pa
     with _Beside(path) as beside:
         beside.open().write(b'half')
     assert {one.name: one.read_text() for one in tmp_path.iterdir()} == {'x.mcap': 'as it was'}
+
+
+TEXT = 'std_msgs/msg/String'
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Return the path of a file with three messages and the journal's first entry."""
+    with Writer(tmp_path / 'run', [], [Topic('/text', TEXT)], journal_topic(),
+                {'scene': 'none'}) as writer:
+        for time in (5, 7, 9):
+            writer.message('/text', time, time, cdr.encode(TEXT, {'data': 'abc'}))
+    [path] = (tmp_path / 'run').glob('*.mcap')
+    return path
+
+
+def test_a_whole_file_stays_as_it_is(file):
+    before = file.read_bytes()
+    recovered, found = recover_file(file)
+    assert recovered == Recovered(file, 4)
+    assert (recovered.lost_messages, recovered.lost_seconds, recovered.lost_bytes,
+            recovered.doubtful_messages, recovered.original) == (0, 0.0, 0, 0, None)
+    assert file.read_bytes() == before
+    assert found.file == (file.name, 5, 9, {'/text': 3, '/journal': 1})
+    assert [(topic.name, topic.type) for topic in found.topics if topic.name == '/text'] == [
+        ('/text', TEXT)]
+    assert found.about == {'scene': 'none'}
+
+
+def test_a_file_without_its_end_gets_one_in_its_place(file):
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-60])
+    recovered, found = recover_file(file, 4)
+    assert (recovered.messages, recovered.lost_messages, recovered.changed) == (4, 0, True)
+    assert recovered.original is None and found.file.name == file.name
+    assert recover_file(file)[0] == Recovered(file, 4)
+
+
+def test_a_file_that_is_being_recorded_is_left_alone(file):
+    with open(file, 'rb') as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        with pytest.raises(BadInput, match='is still being recorded'):
+            recover_file(file)
+    assert recover_file(file)[0].messages == 4
+    with pytest.raises(BadInput, match=r'cannot be opened for repair \(No such file'):
+        recover_file(file.with_name('none.mcap'))
+
+
+@pytest.mark.parametrize('anew', [True, False])
+def test_what_is_told_of_a_file_is_read_from_the_one_that_takes_its_place(
+        file, anew, monkeypatch):
+    def mend(stream, texts, begin, expected):
+        assert expected == 7
+        if anew:
+            begin().write(b'new')
+        return types.SimpleNamespace(message_count=3), (1, 'estimated', 0.5, 9, 2)
+    monkeypatch.setattr(repair, 'mend', mend)
+    monkeypatch.setattr(repair, 'Found', lambda stream, contents, name: (stream.name, name))
+    recovered, (read, name) = recover_file(file, 7)
+    beside = file.with_name(f'.{file.name}.part')
+    assert (pathlib.Path(read), name) == (beside if anew else file, file.name)
+    original = file.with_name(f'{file.name}.orig') if anew else None
+    assert recovered == Recovered(file, 3, 1, 'estimated', 0.5, 9, 2, True, original)

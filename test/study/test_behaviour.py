@@ -173,8 +173,11 @@ def test_a_ball_that_rolls_at_once_has_one_speed_and_no_event(monkeypatch):
 
 def test_without_friction_a_ball_keeps_its_speed(monkeypatch):
     speeds = np.array([[1.0, 9.0], [0.5, 0.0], [1.25, 0.0]])
-    give(monkeypatch, Run(states=lambda _: types.SimpleNamespace(velocity=speeds)), mu=0.0)
+    asked = []
+    give(monkeypatch, Run(states=lambda times: asked.append(times) or types.SimpleNamespace(
+        velocity=speeds)), mu=0.0)
     found = behaviour.frictionless()
+    assert asked == [[0.1, 1e3, 1e6]]
     assert (found.error, found.bound) == (0.5, 0.0)
 
 

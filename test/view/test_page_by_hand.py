@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop of a page on a source whose snapshots and clock are made by hand."""
 
+import contextlib
 import types
 
 import numpy as np
@@ -253,3 +254,24 @@ def test_of_two_recordings_the_first_is_followed_and_the_other_one_moves_with_it
 def test_a_port_that_is_none_is_refused_before_anything_is_served(port):
     with pytest.raises(BadInput, match='--port'):
         Page(Source(), port=port)
+
+
+def test_the_largest_port_and_the_first_address_of_a_host_are_served(monkeypatch):
+    """A host may have several addresses; one that cannot be listened on is refused."""
+    free, taken = ('127.0.0.1', 0), ('203.0.113.7', 0)    # the latter is of no machine
+
+    def addresses(*found):
+        monkeypatch.setattr(page.socket, 'getaddrinfo', lambda *_, **asked: [
+            (page.socket.AF_INET, asked['type'], 0, '', address) for address in found])
+    made = []
+    monkeypatch.setattr(page.viser, 'ViserServer', lambda **asked: made.append(
+        asked) or types.SimpleNamespace())
+    access = types.SimpleNamespace(host='name', guarding=contextlib.nullcontext)
+    addresses(free, taken)
+    server = page.serve(access, 65000)
+    assert [(asked['host'], asked['port']) for asked in made] == [('name', 65000)]
+    assert server.request_share_url() is None
+    page.serve(access, 0)
+    addresses(taken, free)
+    with pytest.raises(BadInput, match='cannot be listened on'):
+        page.serve(access, 8080)

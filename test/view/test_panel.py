@@ -12,7 +12,7 @@ from near import near
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.view import panel, parameters
-from rigid_body_sim.view.panel import EDIT_AFTER, EVENTS, Panel
+from rigid_body_sim.view.panel import EVENTS, Panel
 from rigid_body_sim.view.snapshots import Snapshot
 
 SHOWN = dict.fromkeys(('omega', 'momentum', 'force', 'torque', 'axis', 'polhode', 'herpolhode',
@@ -152,11 +152,11 @@ def test_what_is_typed_is_taken_when_nobody_has_typed_for_a_while(made, monkeypa
     now[0] = 100.0
     assert one.edited() is None
     controls['body.mass'].set(2.0)
-    now[0] += 0.75 * EDIT_AFTER
+    now[0] += 0.3
     controls['body.mass'].set(3.0)
-    now[0] += 0.75 * EDIT_AFTER
+    now[0] += 0.39
     assert one.edited() is None
-    now[0] += 0.26 * EDIT_AFTER
+    now[0] += 0.02
     assert 'mass: 3.0' in one.edited()
     assert one.edited() is None    # once
 

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording that is played: which state, trail and marks belong to a moment of the clock."""
 
+import types
+
 import numpy as np
 import pytest
 from analysis import made
 from near import near
 
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.view import player, snapshots
@@ -176,3 +179,48 @@ def test_beside_another_recording_the_state_is_that_of_the_very_time(path):
     assert not np.allclose(*ticks, atol=1e-3)
     vector[0] = one.end + 1.0    # beyond its end it stays where it was
     assert (one.beside_of(moment._replace(vector=vector)).vector == one._vectors[-1]).all()
+
+
+def made_of(rows, energies=None):
+    """Return a recording and a source of some stamps (ns), poses at x = stamp, and energies."""
+    def columns(topic, _):
+        if topic == 'energy':
+            return {'log_time': np.array(sorted(energies)),
+                    'data': np.array([energies[stamp] for stamp in sorted(energies)])}
+        place = np.array([(1e-9 * stamp, 0.0, 0.0) for stamp in rows])
+        return {'log_time': np.array(rows), 'pose.position': place, 'vector': place + 1.0,
+                'pose.orientation': np.tile((0.0, 0.0, 0.6, 0.8), (len(rows), 1))}
+    topics = ['pose', 'angular_velocity', *(['energy'] if energies is not None else [])]
+    return types.SimpleNamespace(path='run', read=columns), types.SimpleNamespace(
+        topics={name: name for name in topics}, start=1_000_000_000, ticks=len(rows))
+
+
+@pytest.mark.parametrize(('energies', 'expected'), [
+    (None, [np.nan] * 3), ({}, [np.nan] * 3),
+    ({1_500_000_000: 5.0, 2_000_000_000: 7.0}, [5.0, 5.0, 7.0])])
+def test_energies_are_those_recorded_or_unknown(energies, expected):
+    stamps = [1_000_000_000, 1_500_000_000, 3_000_000_000]
+    times, vectors, found = player._states(*made_of(stamps, energies))
+    assert times.tolist() == vectors[:, 0].tolist() == [0.0, 0.5, 2.0]
+    assert vectors[:, 8].tolist() == [1.0, 1.5, 3.0]
+    assert vectors[:, 5:8].tolist() == [[x + 1.0, 1.0, 1.0] for x in (1.0, 1.5, 3.0)]
+    assert vectors[1, 1:5].tolist() == [0.0, 0.0, 0.6, 0.8]
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_of_several_bodies_the_first_is_shown_if_it_has_the_topics(monkeypatch):
+    recording, first = made_of([1_000_000_000])
+    second = types.SimpleNamespace(topics={'pose': 'pose'})
+    monkeypatch.setattr(player, 'Recording', type(recording))
+    monkeypatch.setattr(player, 'sources', lambda recording: [first, second])
+    assert player.states_of(recording)[-1] is first
+    monkeypatch.setattr(player, 'sources', lambda recording: [second, first])
+    with pytest.raises(BadInput, match='has no topic angular_velocity'):
+        player.states_of(recording)
+
+
+def test_a_difference_four_times_those_beside_it_is_kept_and_a_larger_one_is_not():
+    least, other = np.array([0.0, 0.5, 0.0]), np.array([2.0, 0.0, 0.0])
+    for size, kept in ((1.99, True), (2.0, True), (2.01, False)):
+        value = np.array([0.0, 0.0, size])
+        assert player._steady(value, other, least) is (value if kept else least)

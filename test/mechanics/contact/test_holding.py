@@ -23,7 +23,7 @@ from rigid_body_sim.mechanics.contact.holding import (
     way_at,
     way_out,
 )
-from rigid_body_sim.mechanics.contact.parameters import HELD, SLOW
+from rigid_body_sim.mechanics.contact.parameters import HELD
 from rigid_body_sim.mechanics.contact.touch import lever, tangent
 from rigid_body_sim.scene.surfaces import shifted
 
@@ -33,7 +33,7 @@ ROLLS = ', sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.01}'
 def wrung(share):
     """Return the couple for each newton of N at a share of the least speed that counts, m."""
     c, rows = parameters('sphere', ROLLS)._replace(swift=2.0, way=(0.0, 1.0)), axes(3)
-    moved = tuple((share * SLOW * c.swift * np.array(rows[0])).tolist())
+    moved = tuple((share * 1e-13 * c.swift * np.array(rows[0])).tolist())
     return np.array(rolling_couples(c, types.SimpleNamespace(axes=rows, moved=moved), c.way)[1])
 
 
@@ -110,11 +110,13 @@ def test_the_point_of_contact_moves_as_the_normal_turns_in_the_body(seed):
 @pytest.mark.parametrize('matrix', [np.eye(2), np.array([[2.0, 0.5], [0.5, 1.0]])])
 @pytest.mark.parametrize('guess', [(1.0, 0.4), (1.0, -0.3), (0.1, 3.0), (0.0, 2.0)])
 def test_a_body_that_begins_to_roll_goes_where_friction_against_its_way_lets_it(matrix, guess):
-    force, friction = np.array([1.0, 0.4]), 0.3
+    force, friction, asked = np.array([1.0, 0.4]), 0.3, []
 
     def growth(x, z):
+        asked.append((x, z))
         return matrix @ (force - friction * np.array([x, z]))
     x, z = way_out(growth, *guess)
+    assert asked[0] == near(tuple(guess / np.linalg.norm(guess)), rel=1e-15)
     a, b = growth(x, z)
     assert x * x + z * z == near(1.0, rel=1e-15)
     # measured: 2e-16

@@ -229,3 +229,10 @@ def test_a_slip_is_drawn_to_its_balance_where_the_matrix_of_its_rate_says(seed, 
     drawn_to = max(np.linalg.eigvals(np.array(columns)).real) < 0.0
     _, N, A = patch_slipping(patch, mu, d)
     assert patch_following(patch, mu, d) == (drawn_to and N > 0.0 and A > 0.0)
+
+
+def test_the_slip_of_a_patch_that_nothing_presses_has_the_direction_asked():
+    patch = drawn_patch(2)._replace(bn=0.0)
+    d, growth = patch_departure(patch, 0.3, (0.6, 0.0, 0.8))
+    assert np.linalg.norm(d) == near(1.0, rel=1e-15)
+    assert growth == near(np.dot(d, patch.b), rel=1e-12)

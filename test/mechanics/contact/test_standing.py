@@ -2,6 +2,7 @@
 """The force of a plane on a body at one instant, compared with the motion that follows."""
 
 import math
+import types
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.integrators.equations.contact_views import CREEPING, FLIGHT
 from rigid_body_sim.mechanics.balance import Dynamics
+from rigid_body_sim.mechanics.contact import standing as module
+from rigid_body_sim.mechanics.contact.laws import System
 from rigid_body_sim.mechanics.contact.standing import Standing
 from rigid_body_sim.mechanics.contact.touch import tangent
 from rigid_body_sim.numerics.rotations import matrix
@@ -292,3 +295,43 @@ def test_a_ball_begins_to_roll_down_where_friction_does_not_hold_it(
     expected = 0.4 * mass * radius * a * np.cross(n, down) + radius * np.cross(n, force)
     assert couple == pytest.approx(expected, abs=1e-7)
     assert np.linalg.norm(couple) == near(radius * N * (dry if growth else slope), rel=1e-6)
+
+
+def test_a_body_that_is_pulled_off_is_told_by_a_force_that_pulls():
+    """Its friction has no direction: N = -b_n/A of a slip along e1, which is then below 0."""
+    one = object.__new__(Standing)
+    one._c = types.SimpleNamespace(mu=0.3)
+    G = ((2.0, 0.3, 0.4), (0.3, 1.5, -0.2), (0.4, -0.2, 1.0))
+    N = -3.0 / (1.0 - 0.3 * 0.4)
+    found = one._force(System(G, (0.5, 0.7, 3.0)), (0.0, 0.0, 0.0), 1.0)
+    assert found == near((-0.3 * N, 0.0, N), rel=1e-14)
+    # a slip has one
+    found = one._force(System(G, (0.5, 0.7, -3.0)), (0.3, -0.4, 0.0), 1.0)
+    N = 3.0 / (1.0 - 0.3 * (0.6 * 0.4 + 0.8 * 0.2))
+    assert found == near((-0.3 * N * 0.6, 0.3 * N * 0.8, N), rel=1e-14)
+
+
+def test_the_way_of_a_slip_that_begins_is_looked_for_against_the_force_that_would_hold(
+        monkeypatch):
+    """With G = 1 that force is -b = (0.3, -0.4, 1), of which friction gives a tenth of N."""
+    asked = []
+    monkeypatch.setattr(module, 'departure', lambda system, mu, *guess: (
+        asked.append((mu, *guess)) or (0.8, 0.6, 1.0)))
+    one = object.__new__(Standing)
+    one._c = types.SimpleNamespace(mu=0.1)
+    unit = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    found = one._force(System(unit, (-0.3, 0.4, -1.0)), (0.0, 0.0, 0.0), 1.0)
+    assert asked == [(0.1, near(-0.6, rel=1e-15), near(0.8, rel=1e-15))]
+    assert found == near((-0.08, -0.06, 1.0), rel=1e-14)
+
+
+@pytest.mark.parametrize(('u', 'spin', 'balances'), [
+    # a spin of -2 rad/s under the friction (3, -4, 5) with rho = 0.1: u = -0.04 (3, -4)
+    ((-0.12, 0.16, 0.0), -2.0, True), ((0.12, 0.16, 0.0), -2.0, False),
+    ((-0.12, -0.16, 0.0), -2.0, False), ((-0.12, 0.16 + 2e-11, 0.0), -2.0, False),
+    # what spins no faster than rounding holds
+    ((0.0, 0.0, 0.0), -4e-11, False), ((0.0, 0.0, 0.0), -6e-11, True)])
+def test_a_slip_is_the_balance_of_a_friction_to_rounding(u, spin, balances):
+    one = object.__new__(Standing)
+    one._c = types.SimpleNamespace(patch=0.1, size=(0.2,))
+    assert one._is_balance(u, spin, 1.0, (3.0, -4.0, 5.0)) == balances

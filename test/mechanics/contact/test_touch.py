@@ -8,9 +8,21 @@ import pytest
 from near import near
 from scipy.spatial.transform import Rotation
 
+from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.contact.numbers import contact_parameters, weight
-from rigid_body_sim.mechanics.contact.parameters import CONTACT
-from rigid_body_sim.mechanics.contact.touch import couples, lever, response
+from rigid_body_sim.mechanics.contact.parameters import CONTACT, HELD
+from rigid_body_sim.mechanics.contact.touch import (
+    above_flat,
+    couples,
+    gap_of,
+    grips,
+    inclination,
+    is_disk,
+    lever,
+    response,
+    spinning,
+    tangent,
+)
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.surfaces import shifted
 
@@ -102,6 +114,78 @@ def test_rolling_friction_takes_the_power_of_a_force_against_the_moving_contact(
 def test_a_contact_that_does_not_move_wrings_nothing():
     c = parameters('ellipsoid', ', rolling_friction: {dry: 0.02, viscous: 0.3}')
     assert couples(c, (0.0, 0.6, 0.8), (0.0, 0.0, 0.0)) == ((0.0,) * 3, (0.0,) * 3, 0.0, 0.0)
+
+
+def test_rolling_friction_without_a_film_knows_a_body_that_lies_flat():
+    """There the film would be infinite."""
+    c = parameters('disk', ', rolling_friction: {viscous: 0.3}')
+    viscous, wrung, speed, film = couples(c, (0.0, 0.0, 1.0), (0.3, 0.4, 0.0))
+    assert (speed, film, wrung) == (0.5, 0.0, (0.0, 0.0, 0.0))
+    assert np.isfinite(viscous).all()
+
+
+@pytest.mark.parametrize(('effects', 'flat'), [
+    ('', 1e-10), (', rolling_friction: {dry: 0.02}', 1e-6),
+    (', rolling_friction: {viscous: 0.02}', 1e-6), (', air_film: {viscosity: 1}', 1e-4),
+    (', rolling_friction: {dry: 0.02}, air_film: {viscosity: 1}', 1e-4)])
+def test_a_ring_is_flat_below_an_angle_that_its_friction_tells(effects, flat):
+    c, gamma = parameters('disk', effects), (0.6 * 3e-5, -0.8 * 3e-5, 1.0)
+    assert inclination(gamma) == near(3e-5, rel=1e-15)
+    assert above_flat(c, gamma) == near(3e-5 - flat, rel=1e-14)
+    assert above_flat(parameters('sphere'), gamma) == 1.0
+
+
+def test_the_gap_of_a_flight_through_flat_is_that_below_the_lowest_point():
+    """It counts from the height that the lowest point would have if the ring lay flat."""
+    c, gamma = parameters('disk'), (0.06, -0.08, math.sqrt(0.99))
+    assert gap_of(c, 0.5, gamma) == 0.5
+    assert gap_of(c._replace(level=1.0), 0.5, gamma) == near(0.5 - 0.2 * 0.1, rel=1e-15)
+
+
+def test_the_phases_and_the_surfaces_are_told_apart():
+    disk, torus, sphere = map(parameters, ('disk', 'torus', 'sphere'))
+    assert [is_disk(c) for c in (disk, torus, sphere)] == [True, False, False]
+    assert [grips(torus._replace(way=way, rim=rim)) for way, rim in (
+        ((1.0, 0.0), 0.0), (HELD, 0.0), ((1.0, 0.0), 1e-9), (HELD, 1e-9))] == [
+            False, True, True, True]
+    assert tangent((0.6 * 0.1, -0.8 * 0.1, 0.9)) == near((0.8, 0.6, 0.0), rel=1e-15)
+    assert tangent((0.0, 0.0, 1.0)) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize('seed', range(2))
+def test_a_patch_is_told_how_forces_and_couples_spin_the_body(seed):
+    """The spin about n grows by n . I^-1 torque; a couple about n moves the point, too."""
+    c, rows = parameters('ellipsoid'), axes(seed)
+    r, wrung, torque = np.array(lever(c, rows[2])), (0.01, -0.02, 0.03), (0.5, -0.2, 0.7)
+    E, inverse = np.array(rows), np.linalg.inv(np.array(c.inertia))
+    turned, moved, (driven, stiff) = spinning(c.inverse, rows, tuple(r), torque, wrung)
+    for k in range(3):
+        couple = np.cross(r, E[k]) + (np.array(wrung) if k == 2 else 0.0)
+        assert turned[k] == near(E[2] @ inverse @ couple, rel=1e-12)
+    assert moved == pytest.approx(E @ np.cross(inverse @ E[2], r), rel=1e-12, abs=1e-15)
+    assert driven == near(E[2] @ inverse @ torque, rel=1e-12)
+    assert stiff == near(E[2] @ inverse @ E[2], rel=1e-12)
+
+
+def test_the_gyroscopic_part_of_a_tensor_is_what_differs_from_its_middle_entry():
+    c = parameters('ellipsoid')
+    expected = np.array(c.inertia) - 0.04 * np.eye(3)
+    assert np.array(c.uneven) == pytest.approx(expected, abs=1e-17)
+    assert sorted(np.diag(c.uneven))[1] == 0.0
+
+
+def test_a_phase_begins_with_numbers_that_stand_for_none():
+    c = parameters('ellipsoid', ', sliding_friction: {mu: 0.3}, spinning_friction: {radius: 0.01}')
+    assert (c.patch, c.way, c.until) == (0.01, (1.0, 0.0), math.inf)
+    assert [c.mode, c.swift, c.creep, c.side, c.lag, c.wide, c.onset, c.turn, c.since, c.slack,
+            c.rim, c.level, c.began, *c.origin] == [0.0] * 15
+
+
+@pytest.mark.parametrize('mu', ['0', '.inf'])
+def test_a_patch_needs_a_friction_that_slips(mu):
+    with pytest.raises(BadInput, match='a finite mu above 0'):
+        parameters('ellipsoid', f', sliding_friction: {{mu: {mu}}}, '
+                   'spinning_friction: {radius: 0.01}')
 
 
 def test_the_numbers_of_a_scene_are_its_own_and_frictions_add():

@@ -4,6 +4,7 @@
 import io
 import itertools
 import random
+import types
 
 import numpy as np
 import pytest
@@ -148,3 +149,27 @@ def test_contents_of_two_stretches_are_put_together_and_moved(shift):
     assert (empty.start_time, empty.end_time, empty.chunk_count) == (50, 200, 3)
     assert np.array_equal(np.frombuffer(empty.chunk_indexes, np.uint8),
                           np.frombuffer(whole.chunk_indexes, np.uint8))
+
+
+@pytest.mark.parametrize(('damages', 'cut', 'refused'), [
+    ([], False, False), (['a hole'], False, True), ([], True, True), (['a hole'], True, True)])
+def test_a_file_without_a_summary_is_read_if_all_of_it_is_whole(
+        damages, cut, refused, tmp_path, monkeypatch):
+    written(tmp_path / 'a.mcap')
+    monkeypatch.setattr(reading, 'read_summary', lambda stream: None)
+    contents = types.SimpleNamespace(schemas={}, channels={}, counts={}, start_time=3, end_time=4)
+    monkeypatch.setattr(reading, 'Scan', lambda stream: types.SimpleNamespace(
+        damages=damages, cut=cut, contents=contents, places=[]))
+    if refused:
+        with pytest.raises(Damaged, match='the file is damaged'):
+            FileReader(tmp_path / 'a.mcap')
+        return
+    reader = FileReader(tmp_path / 'a.mcap')
+    assert (reader.start_time, reader.end_time) == (3, 4)
+    reader.close()
+
+
+@pytest.mark.parametrize('length', range(8))
+def test_an_index_that_points_at_a_few_bytes_points_at_no_chunk(length):
+    with pytest.raises(Damaged, match='points at no chunk'):
+        reading._uncompressed(b'\x06' + bytes(length) if length else b'')

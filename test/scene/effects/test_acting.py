@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The force and the torque of every effect at random states, by hand in world axes.
 
-The body has principal axes and a centre of mass askew to its origin; it is free, or held at its
-origin, or on an axis beside it. What expressions know is worked out from the motion of the origin.
+The body has principal axes and a centre of mass askew to its origin; it is free, held at its
+origin, carried there on a path, or on an axis beside it. What expressions know is worked out from
+the motion of the origin.
 """
 
 import importlib
@@ -24,8 +25,10 @@ CENTER = np.array([0.1, -0.2, 0.3])
 MASS = 2.0
 THROUGH = np.array([0.2, 0.1, -0.1])
 CONSTRAINTS = {'free': 'free', 'pivot': 'pivot',
+               'carried': "{pivot: {motion: ['sin(k*t)', 't^2', '0.3*t']}}",
                'hinge': f'{{hinge: {{axis: [1, 2, 2], through: {THROUGH.tolist()}}}}}'}
-POINTS = {'free': CENTER, 'pivot': np.zeros(3), 'hinge': THROUGH}
+POINTS = {'free': CENTER, 'pivot': np.zeros(3), 'carried': np.zeros(3), 'hinge': THROUGH}
+PUSHED = 'free', 'carried'    # forces count
 
 
 class Now(typing.NamedTuple):
@@ -56,7 +59,7 @@ def drawn(kind, seed):
     draw = np.random.default_rng(seed)
     turn, omega = Rotation.random(random_state=seed), draw.normal(size=3)
     place, velocity = draw.normal(size=(2, 3))
-    if kind != 'free':    # the held point stays in the world's origin
+    if kind not in PUSHED:    # the held point stays in the world's origin
         arm = turn.apply(POINTS[kind])
         place, velocity = -arm, -np.cross(turn.apply(omega), arm)
     return Now(float(draw.uniform(0.1, 2.0)), turn, omega, place, velocity)
@@ -81,12 +84,12 @@ def pushed(effect, frame, now, time=None):
     total = {'force': np.zeros(3), 'torque': np.zeros(3)}
     turn = now.turn * Rotation.from_quat(frame.axes)
     omega = Rotation.from_quat(frame.axes).inv().apply(now.omega)
-    # what is not `in_field` is given the velocity of the centre of mass of a free body alone
-    _, velocity = now.at(CENTER)
+    # what is not `in_field` is given the velocity of the point of reference, if it moves
+    velocity = now.at(frame.point)[1] if frame.pushed else np.zeros(3)
     for one in effect.acting(frame, now.t if time is None else time):
         more = (now.t, *now.at(frame.point)[0]) if one.in_field else ()
         found = function(one.kernel)(*one.values, *turn.as_quat(), *omega,
-                                     *(velocity if frame.moves else np.zeros(3)), *more)
+                                     *velocity, *more)
         total[one.gives] += turn.apply(found) if one.gives == 'torque' else found
     return total['force'], total['torque']
 
@@ -100,7 +103,7 @@ def energy(effect, frame, now):
 def at_point(now, point, force, kind):
     """Return force and torque (world) of a force at a point of the body."""
     torque = np.cross(now.turn.apply(np.subtract(point, POINTS[kind])), force)
-    return (np.array(force) if kind == 'free' else np.zeros(3)), torque
+    return (np.array(force) if kind in PUSHED else np.zeros(3)), torque
 
 
 def weight(now, kind):
@@ -217,7 +220,7 @@ AS_NUMBERS = (f'drag: {{linear: {np.diag([0.7] * 3).tolist()}, '
 HERE = 'at: [0.4, -0.1, 0.7]'
 SPRING = 'spring: {at: [0.4, -0.1, 0.7], anchor: [1, 0.5, -2], stiffness: 3'
 ROTOR = 'rotor: {axis: [4, -2, 4], momentum: 1.5}'
-EVERYWHERE, NO_AXIS, FREE = ('free', 'pivot', 'hinge'), ('free', 'pivot'), ('free',)
+EVERYWHERE, NO_AXIS, FREE = (*CONSTRAINTS,), ('free', 'pivot', 'carried'), ('free',)
 CASES = {
     'gravity: {g: 9.81}': (weight, EVERYWHERE),
     'gravity: {g: [1, 2, -9]}': (field, EVERYWHERE),
@@ -365,7 +368,13 @@ def test_a_torque_in_pieces_may_be_booked_as_heat(frame):
         assert [one.books for one in scene.effects[0].acting(scene.frame, 1.0)] == [books]
 
 
-@pytest.mark.parametrize('kind', CONSTRAINTS)
+def test_a_wrench_is_held_if_a_part_of_it_is_not_zero():
+    assert not Wrench()
+    assert Wrench(force=(0.0, 1.0, 0.0))
+    assert Wrench(torque=(0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize('kind', ['free', 'pivot', 'hinge'])
 @pytest.mark.parametrize('axes', ['world', 'body'])
 def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
     wrench = Wrench((1.0, -2.0, 3.0), (0.5, 0.7, -0.2), axes)
@@ -378,10 +387,34 @@ def test_a_held_wrench_acts_at_the_centre_of_mass_in_its_own_axes(kind, axes):
     assert found[1] == pytest.approx(moment + torque, abs=1e-13)
 
 
+OPERATIONS = {'+': lambda a, b: a + b, '-': lambda a, b: a - b, '*': lambda a, b: a * b,
+              '/': lambda a, b: a / b, '^': lambda a, b: a ** b, 'negative': lambda a: -a,
+              'sqrt': np.sqrt, 'sin': np.sin, 'cos': np.cos}
+
+
+def value(one, known):
+    """Return the value of a tree."""
+    if one.op == 'number':
+        return one.args[0]
+    return known[one.args[0]] if one.op == 'name' else OPERATIONS[one.op](
+        *(value(arg, known) for arg in one.args))
+
+
+def by_formulas(formulas, frame, now):
+    """Return force and torque (world) of the formulas of a power series."""
+    turn = now.turn * Rotation.from_quat(frame.axes)
+    known = now.names() | dict(formulas.parameters)
+    if formulas.of_frame:
+        omega = Rotation.from_quat(frame.axes).inv().apply(now.omega)
+        place, velocity = now.at(frame.point)
+        known |= now._replace(turn=turn, omega=omega, place=place, velocity=velocity).names()
+    force, torque = ([value(one, known) for one in trees]
+                     for trees in (formulas.force, formulas.torque))
+    return np.array(force), (turn if formulas.of_frame else now.turn).apply(torque)
+
+
 @pytest.mark.parametrize(('effects', 'kind'), [
-    (effects, kind) for effects, kind in PLACES
-    if effects.startswith(('gravity: ', 'drag', 'torque: {value: [1', ROTOR))
-    and effects != SHAPED])
+    place for place in PLACES if not place[0].startswith('dry')])
 def test_a_power_series_is_given_the_same(effects, kind):
     """Pull: constant + arm x R^T force + R^T couple + drag omega; a free body is moved by it."""
     scene, now = scene_of(effects, kind), drawn(kind, 4)
@@ -394,10 +427,106 @@ def test_a_power_series_is_given_the_same(effects, kind):
     force = np.array(pull.force or np.zeros(3)) - pull.slowing * now.at(CENTER)[1]
     if kind != 'free':
         torque = torque + np.cross(turn.apply(frame.arm), force)
+    for formulas in pull.formulas:
+        pushing, turning = by_formulas(formulas, frame, now)
+        assert kind == 'free' or not pushing.any()    # the torque has its moment
+        force, torque = force + pushing, torque + turning
     expected_force, expected_torque = CASES[effects][0](now, kind)
-    assert torque == pytest.approx(expected_torque, abs=1e-13)
+    assert torque == pytest.approx(expected_torque, rel=1e-12, abs=1e-12)
     if kind == 'free':
-        assert force == pytest.approx(expected_force, abs=1e-13)
+        assert force == pytest.approx(expected_force, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize('kind', ['pivot', 'hinge', 'free'])
+def test_damping_is_the_part_of_drag_in_proportion_to_velocity(kind):
+    """It is the same at a pivot that moves; a matrix slows no flight."""
+    for effects in (SHAPED, 'drag: {linear: 0.7, angular: 0.3}'):
+        scene = scene_of(effects, kind)
+        frame, linear = scene.frame, [[0.7, 0, 0], [0, 0.7, 0], [0, 0, 0.7]]
+        C, K = (MATRIX, 0.2) if effects == SHAPED else (linear, 0.3)
+        R = Rotation.from_quat(frame.axes).as_matrix()
+        arm = np.cross(np.eye(3), R @ frame.arm) * (kind != 'free')    # omega -> omega x r
+        expected = R.T @ (-K * np.eye(3) - arm @ np.array(C) @ arm.T) @ R
+        frames = [frame]
+        if kind == 'pivot':
+            frames.append(scene_of(effects, 'carried').frame)
+        for one in frames:
+            damping = scene.effects[0].damping(one)
+            assert np.array(damping.drag) == pytest.approx(expected, rel=1e-13, abs=1e-15)
+            assert damping.slowing == (0.7 if kind == 'free' and effects != SHAPED else 0.0)
+
+
+def test_a_number_slows_a_flight_with_squares_beside_it():
+    scene = scene_of('drag: {linear: 0.7, quadratic: 0.2}', 'free')
+    damping = scene.effects[0].damping(scene.frame)
+    assert (damping.drag, damping.slowing) == (None, 0.7)
+    assert scene_of('drag: {linear: 0.7}', 'free').effects[0].series(scene.frame, 0.0).drag is None
+
+
+@pytest.mark.parametrize('kind', CONSTRAINTS)
+def test_the_point_of_a_moving_pivot_carries_the_body_by_its_mass_times_acceleration(kind):
+    """-M a at the centre of mass; a = (-k^2 sin(k t), 2, 0). It acts where the pivot moves."""
+    effect = scene_of('', 'carried').effects[-1]
+    frame, now = scene_of('', kind).frame, drawn(kind, 6)
+    a = np.array([-1.7 ** 2 * np.sin(1.7 * now.t), 2.0, 0.0])
+    expected = np.cross(now.turn.apply(CENTER), -MASS * a) * (kind == 'carried')
+    found = pushed(effect, frame, now)
+    assert not found[0].any()
+    assert found[1] == pytest.approx(expected, rel=1e-13, abs=1e-14)
+    of_series = np.zeros(3)
+    for formulas in effect.series(frame, 0.0).formulas:
+        of_series = of_series + by_formulas(formulas, frame, now)[1]
+    assert of_series == pytest.approx(expected, rel=1e-13, abs=1e-14)
+    assert bool(effect.acting(frame, 0.0)) == (kind == 'carried')
+
+
+def test_a_moving_pivot_at_the_centre_of_mass_turns_nothing_but_is_seen():
+    scene = parse_scene("scene: s\nbody: {mass: 2, inertia: [1, 2, 2.5]}\n"
+                        "constraint: {pivot: {motion: [0, 0, 'sin(t)']}}\n"
+                        'effects: []\ninitial: {}\n')
+    [acting] = scene.effects[-1].acting(scene.frame, 0.0)
+    assert (acting.values, acting.gives, acting.books) == ((0.0, 0.0, 0.0), 'torque', 'work')
+    assert acting.polynomial
+
+
+def test_a_torsion_spring_turns_toward_its_angle_and_its_damping_against_the_rate():
+    effects = 'spring: {stiffness: 3, angle: 0.5, damping: 0.6}'
+    scene = scene_of(effects, 'hinge')
+    effect, frame, n = scene.effects[0], scene.frame, np.array([1.0, 2.0, 2.0]) / 3.0
+    start = Rotation.from_quat(frame.hinge.zero)
+    for angle, rate in ((0.3, 0.7), (0.9, -0.4), (-2.0, 1.0)):
+        turn = start * Rotation.from_rotvec(angle * n)
+        now = Now(0.0, turn, rate * n, -turn.apply(THROUGH), np.zeros(3))
+        for damping in (0.6, 0.0):
+            one = effect if damping else scene_of(
+                effects.replace(', damping: 0.6', ''), 'hinge').effects[0]
+            expected = (-3.0 * (angle - 0.5) - damping * rate) * turn.apply(n)
+            assert pushed(one, frame, now)[1] == pytest.approx(expected, rel=1e-13, abs=1e-14)
+            of_series = np.zeros(3)
+            for formulas in one.series(frame, 0.0).formulas:
+                known = now.names() | {'angle': angle, 'rate': rate}
+                of_series = of_series + [value(part, known) for part in formulas.torque]
+            assert turn.apply(of_series) == pytest.approx(expected, rel=1e-13, abs=1e-14)
+            assert energy(one, frame, now) == near(1.5 * (angle - 0.5) ** 2, rel=1e-13)
+        assert [one.books for one in effect.acting(frame, 0.0)] == ['potential', 'heat']
+
+
+def test_dry_friction_switches_where_the_rate_changes_its_sign():
+    scene = scene_of('dry_friction: {torque: 0.4}', 'hinge')
+    [acting] = scene.effects[0].acting(scene.frame, 0.0)
+    kernel, switches = function(acting.kernel), function(acting.switching)
+    n = Rotation.from_quat(scene.frame.axes).inv().apply(np.array([1.0, 2.0, 2.0]) / 3.0)
+    for omega in np.random.default_rng(1).normal(size=(12, 3)):
+        rest = 0.5, -0.5, 0.5, 0.5, *omega, 1.0, 2.0, 3.0
+        assert switches(*acting.values, *rest) == (near(n @ omega, rel=1e-13),)
+        assert kernel(*acting.values, *rest) == near(-0.4 * np.sign(n @ omega) * n, rel=1e-13)
+        # a mode stands for the sign that a switch had before
+        for mode in (1.0, -1.0):
+            values = list(acting.values)
+            values[acting.modes[0]] = mode
+            assert kernel(*values, *rest) == near(-0.4 * mode * n, rel=1e-13)
+    assert kernel(*acting.values, 0.0, 0.0, 0.0, 1.0, *[0.0] * 6) == (0.0, 0.0, 0.0)
+    assert (acting.grip, scene.effects[0].grip) == (0.4, 0.4)
 
 
 @pytest.mark.parametrize(('effects', 'momentum'), [
@@ -444,5 +573,6 @@ def test_inner_parts_turn_the_axes_until_a_wobble_is_too_small_to_show(
 @pytest.mark.parametrize('g', ['[0, 0, -1.6]', '1.6'])
 def test_a_field_along_minus_z_is_one_that_has_closed_forms(g):
     assert scene_of(f'gravity: {{g: {g}}}', 'free').effects == (Gravity(1.6),)
+    assert scene_of('gravity: {g: [0, 0, 0]}', 'free').effects == (Gravity(0.0),)
     with pytest.raises(BadInput, match=r'gravity\.g: got -0\.1'):
         scene_of('gravity: {g: -0.1}', 'free')

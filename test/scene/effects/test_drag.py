@@ -44,7 +44,8 @@ def test_other_matrices_and_squares_are_not(drag):
 
 
 @pytest.mark.parametrize('size', [1e-8, 1.0, 1e8])
-@pytest.mark.parametrize('values', [(1, 2, 3), (0, 1, 1), (0, 0, 1), (0, 0.2, 2), (1e-9, 1, 1)])
+@pytest.mark.parametrize('values', [
+    (1, 2, 3), (0, 1, 1), (0, 0, 1), (0, 0, 0), (0, 0.2, 2), (1e-9, 1, 1)])
 def test_a_matrix_without_negative_eigenvalues_is_taken(size, values):
     """The rounding of a zero eigenvalue, either sign, is none."""
     matrix = of_eigenvalues(*(size * value for value in values))

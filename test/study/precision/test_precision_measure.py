@@ -136,14 +136,16 @@ def test_refusals_are_recorded_and_nan_is_one(racket):
     def gives_up(_):
         raise NotConverged('too far')
     silent = runner.Run(lambda: None, lambda time: None, lambda: [np.nan] * 7)
+    partly = runner.Run(lambda: None, lambda time: None, lambda: [0, 0, 0, 1, np.nan, 1, 1])
     found = measure.measure(*racket,
                             [runner.Runner('no', 'none', (None,), refuses),
                              runner.Runner('silent', 'none', (None,), lambda _: silent),
+                             runner.Runner('partly', 'none', (None,), lambda _: partly),
                              runner.Runner('weak', 'none', (None,), gives_up)],
                             1.0, 5)
     assert found['lines'] == []
     assert found['refused']['no'] == 'a rod has no inverse'
-    assert 'NaN' in found['refused']['silent']
+    assert all('NaN' in found['refused'][name] for name in ('silent', 'partly'))
     assert found['refused']['weak'] == 'too far'
 
 
