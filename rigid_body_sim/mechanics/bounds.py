@@ -13,6 +13,8 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.scene import kept
 
+REST = 2.0 ** -60    # rad/s: a body that turns no faster rests, for a millennium
+
 
 @kept
 def swing_rate(scene):
@@ -56,7 +58,7 @@ def passed(scene, time, potential):
 
     One that is let go, or turned by a torque and stopped by another, is at rest again in the end.
     What torques gave until they jumped, and potentials can give, is the momentum L in between;
-    the energy is at least L^2/2I.
+    the energy is at least L^2/2I. Both are at least those at the rate REST.
 
     Parameters
     ----------
@@ -66,8 +68,15 @@ def passed(scene, time, potential):
         As above, J.
     """
     times, impulses = _given(scene)
-    momentum = max(impulses[bisect_right(times, time)], swing_momentum(scene, potential))
+    least = resting(scene)[1]
+    momentum = max(impulses[bisect_right(times, time)], swing_momentum(scene, potential), least)
     return 0.5 * momentum * momentum / _largest_moment(scene), momentum
+
+
+def resting(scene):
+    """Return the energy (J) and angular momentum (kg m^2/s) of a body that turns at REST."""
+    moment = _largest_moment(scene)
+    return 0.5 * moment * REST * REST, moment * REST
 
 
 @kept

@@ -15,7 +15,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import booking, parameters
-from rigid_body_sim.mechanics.bounds import drive, swing_rate
+from rigid_body_sim.mechanics.bounds import drive, resting, swing_rate
 from rigid_body_sim.mechanics.energy import DIAGNOSIS, carried_energy
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, WORK
 from rigid_body_sim.mechanics.panels import (
@@ -81,6 +81,7 @@ class Actors:
         found = self._acting(-math.inf)
         self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
         self.swing, self.drive = swing_rate(scene), drive(scene, wrench)
+        self._resting = resting(scene)
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self._frame, time)]
@@ -111,11 +112,15 @@ class Actors:
         return carried_energy(self._numbers, STATE.load(vector.tolist()))
 
     def sizes(self, vector):
-        """Return the sizes of energy (J) and momentum (kg m^2/s) of a state."""
+        """Return the sizes of energy (J) and momentum (kg m^2/s) of a state.
+
+        They are at least those of a body that rests: smaller errors are nothing.
+        """
         row = np.empty(DIAGNOSIS.size)
         self._energies.diagnose(self._scene, vector, row)
         found = DIAGNOSIS.load(row.tolist())
-        return max(found.kinetic, abs(found.potential)), hypot3(*found.momentum)
+        return (max(found.kinetic, abs(found.potential), self._resting[0]),
+                max(hypot3(*found.momentum), self._resting[1]))
 
 
 class Quadrature:

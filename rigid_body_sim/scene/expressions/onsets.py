@@ -24,11 +24,13 @@ STRETCHES = np.array([0.0, *(2.0 ** np.arange(-4.0, 24.0))])
 """Edges of the stretches of time that are looked at, s: up to half a year."""
 SAMPLES = 64        # of a stretch, for the largest value
 RESOLVED = 0.25     # share of the largest value by which the function changes within a part
-STEEP = 2.0 ** 16   # factor by which it changes within a part, at most, of what is not nothing
-NOTHING = 2.0 ** -50    # share of the largest value: a change of so much is none
+STEEP = 2.0 ** 8    # factor by which it changes within a part, at most, of what is not nothing
+NOTHING = 2.0 ** -48    # share of the largest value: a change of so much is none
 HALVINGS = 40       # of a stretch, at most
 MOST = 256          # parts of a stretch that are halved at once: beyond, it is lively throughout
-SHORTER = 16.0      # times the part before: there the function begins to change
+SHORTER = 12.0      # times a part before: there the function begins to change faster
+AT_REST = 4.0       # the same beside the time in which nothing changed
+SMALLEST = 16       # halvings after which what overflows is looked at closer
 WITHIN = 12         # parts behind that one at whose ends a step ends
 MANY = 256          # times in all
 
@@ -46,19 +48,21 @@ def onsets(trees: tuple[tree.Term, ...],
     parameters : tuple of (str, float)
         Those that the trees may use.
     """
-    known, times = dict(parameters), set()
+    known, times, seen = dict(parameters), set(), set()
     able = {*TIME, *known}
-    for one in tree.parts(*trees):
-        if (_is_lively(one) and {*TIME} <= tree.names(one) <= able
+    for one in reversed(tree.parts(*trees)):    # what contains others comes before them
+        if (_is_lively(one) and one not in seen and {*TIME} <= tree.names(one) <= able
                 and not {part.op for part in tree.parts(one)} & {*KINKED, 'where'}):
-            times |= set(_begins(*_parts(functools.partial(_values, one, known))))
+            seen.update(tree.parts(one))
+            times |= set(_begins(*_parts(functools.partial(_slopes, one, known))))
     return tuple(sorted(times)[:MANY])
 
 
-def _values(one, known, times):
-    """Return the intervals of a function of time and of parameters in intervals of time."""
+def _slopes(one, known, times):
+    """Return the intervals of the slope of a function of time in intervals of time."""
     given = {name: fixed(value, times[0]) for name, value in known.items()}
-    return ranges((one,), {'t': times} | given)[one]
+    [slope] = tree.derivatives(one, TIME)
+    return ranges((slope,), {'t': times} | given)[slope]
 
 
 def _is_lively(one):
@@ -73,8 +77,8 @@ def _begins(begin, length, rests):
     found, longest, rest, left = [], 0.0, 0.0, 0
     for k in range(1, len(begin)):
         rest = rest + length[k - 1] if rests[k - 1] else 0.0
-        longest = max(longest, length[k - 1], rest)
-        if SHORTER * length[k] <= longest:
+        longest = max(longest, length[k - 1])
+        if SHORTER * length[k] <= longest or AT_REST * length[k] <= rest:
             found.append(begin[k])
             longest, rest, left = length[k], 0.0, WITHIN
         elif left:
@@ -104,12 +108,13 @@ def _parts(function):
     stretch, lively = np.arange(len(begin)), np.zeros(len(begin), dtype=bool)
     samples = (begin[:, np.newaxis]
                + np.outer(end - begin, (np.arange(SAMPLES) + 0.5) / SAMPLES)).ravel()
-    largest, done = _largest(function, samples), []
+    largest, done = _finite(np.abs(function((samples, samples))[0])), []
     for halving in range(HALVINGS + 1):
-        low, high = function((begin, end))
-        middle = 0.5 * (begin + end)
-        largest = max(largest, _largest(function, middle))
-        rests, resolved = _judged(low, high, largest)
+        middle, quarter = 0.5 * (begin + end), 0.75 * begin + 0.25 * end
+        within = function((begin, end))
+        at = [np.abs(function((time, time))[0]) for time in (begin, quarter, middle, end)]
+        largest = max(largest, _finite(at[2]))
+        rests, resolved = _judged(within, at, largest, halving >= SMALLEST)
         left = ~resolved & (halving < HALVINGS)
         lively |= np.bincount(stretch[left], minlength=len(lively)) > MOST
         twice = np.flatnonzero(lively[1:] & lively[:-1])
@@ -132,19 +137,32 @@ def _parts(function):
     return begin[order].tolist(), length[order].tolist(), rests[order].tolist()
 
 
-def _judged(low, high, largest):
-    """Return whether a function does not change in parts, and whether it changes little there.
+def _judged(within, at, largest, is_small):
+    """Return whether a slope is nothing in parts, and whether it changes little there.
 
-    Their least and largest values are given, and the largest size of all.
+    Parameters
+    ----------
+    within : tuple of 2 arrays
+        The least and the largest value in each part.
+    at : list of 4 arrays
+        The sizes at its beginning, quarter, middle and end.
+    largest : float
+        The largest size of all.
+    is_small : bool
+        Whether the parts are so small that points tell of one in which the slope overflows.
     """
+    (low, high), nothing = within, [size <= NOTHING * largest for size in at]
     with np.errstate(invalid='ignore', over='ignore'):    # infinite ends
-        change = high - low
-        steep = ((low > 0.0) & (high > STEEP * low)) | ((high < 0.0) & (low < STEEP * high))
-        rests = change <= NOTHING * largest
-        return rests, rests | ((change <= RESOLVED * largest) & ~steep)
+        change, size = high - low, np.maximum(-low, high)
+        rests = np.maximum(change, size) <= NOTHING * largest
+        steep = (((low > 0.0) & (high > STEEP * low)) | ((high < 0.0) & (low < STEEP * high))
+                 | (nothing[0] & nothing[1] & (size > STEEP * NOTHING * largest)))
+    if is_small:    # what overflows there on the way may still be nothing
+        unseen = [one | ~np.isfinite(size) for one, size in zip(nothing, at, strict=True)]
+        rests |= ~np.isfinite(change) & np.logical_and.reduce(unseen)
+    return rests, rests | ((change <= RESOLVED * largest) & ~steep)
 
 
-def _largest(function, times):
-    """Return the largest finite size of a function at times (s), or 0."""
-    sizes = np.abs(function((times, times))[0])
+def _finite(sizes):
+    """Return the largest finite size, or 0."""
     return float(sizes[np.isfinite(sizes)].max(initial=0.0))

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sizes of terms that may cancel, by hand."""
+
+import math
+
+import pytest
+
+from rigid_body_sim.scene.expressions import reader
+from rigid_body_sim.scene.expressions.cancelling import cancelling
+
+TURN = 2.0 * math.pi
+
+
+def of(*texts, horizon=100.0, **parameters):
+    names = {'t', 'x', 'wx', 'rate', 'angle', 'qx', 'qw', *parameters}
+    return cancelling(tuple(reader.read(text, names, 'x') for text in texts),
+                      tuple(parameters.items()), horizon)
+
+
+@pytest.mark.parametrize(('text', 'expected'), [
+    ('3', 0.0), ('3 - 2', 0.0), ('sin(300*t)', 0.0), ('5*exp(-t)', 0.0), ('exp(-t) + 1', 0.0),
+    ('exp(-t) - 1', 2.0), ('0.5*(1 + tanh((t - 50)/0.1))', 1.0), ('1 - tanh(t)', 2.0),
+    ('-(1 - tanh(t))', 2.0), ('abs(1 - tanh(t))', 2.0), ('(1 - tanh(t))/4', 0.5),
+    ('(1 - tanh(t))/(2 + cos(t))', 2.0), ('(1 - tanh(t))/cos(t)', 0.0),
+    ('tanh(t - 50) - tanh(t - 60)', 2.0), ('sin(t) + 0.5*cos(t)', 1.5),
+    ('(1 - exp(-t))*3*sin(t)', 6.0), ('where(t < 5, 1 - tanh(t), 0)', 2.0),
+    ('max(2*(exp(-t) - 1), 1 - tanh(t))', 4.0),
+    ('sin(1 - tanh(t))', 0.0), ('(t - 50)^2', 0.0),    # within a function
+    ('-5*(angle - 1)', 5.0 * (TURN + 1.0)), ('5 - 5*angle - 2*rate', 2.0 * 5.0 + 2.0 * 5.0 * TURN),
+    ('-k*(angle - 1) - c*rate', 2.0 * 3.0 * (TURN + 1.0)), ('qx*qw - qw', 2.0),
+    ('0.5 - 0.1*wx', 0.5), ('wx - rate', 0.0), ('x*(1 - tanh(t))', 0.0)])
+def test_sums_whose_terms_may_have_opposite_signs_count(text, expected):
+    parameters = {'k': 3.0, 'c': 7.0} if 'k*' in text else {}
+    # the least value of a divisor is that of one of 256 parts of the time
+    found = of(text, **parameters)
+    assert found == pytest.approx(expected, rel=0.2 if '/(2' in text else 1e-12)
+
+
+def test_the_time_goes_up_to_the_horizon():
+    assert of('t - 3', horizon=4.0) == 7.0
+    assert of('sin(t) + 0.5', horizon=3.0) == 0.0
+    assert of('sin(t) + 0.5', horizon=4.0) == 1.5
+
+
+def test_three_components_are_a_vector():
+    assert of('exp(-t) - 1', '0', '2*(exp(-t) - 1)') == pytest.approx(math.sqrt(20.0), rel=1e-15)
