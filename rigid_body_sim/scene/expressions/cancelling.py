@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.intervals import fixed, ranges
 from rigid_body_sim.scene.expressions.source import ATTITUDE
@@ -27,24 +28,24 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
 
     Parameters
     ----------
-    trees : tuple of Terms
+    trees : tuple of 3 Terms
     parameters : tuple of (str, float)
     horizon : float
         The time goes on up to there, s.
     """
     if not tree.names(*trees):
         return 0.0
-    edges = np.linspace(0.0, horizon, PARTS + 1)
-    one, turn = np.ones(PARTS), np.full(PARTS, 2.0 * math.pi)
+    edges = np.arange(PARTS + 1.0) * (horizon / PARTS)
+    unit, turn = np.ones(PARTS), 2.0 * math.pi * np.ones(PARTS)
     given = {'t': (edges[:-1], edges[1:]), 'angle': (-turn, turn)}
-    given |= dict.fromkeys(ATTITUDE, (-one, one))
-    given |= {name: fixed(value, one) for name, value in parameters}
+    given |= dict.fromkeys(ATTITUDE, (-unit, unit))
+    given |= {name: fixed(value, unit) for name, value in parameters}
     found = ranges(trees, given)
     sizes = {part: _size(*found[part]) for part in found}
     cancelled: dict[tree.Term, float] = {}
     for part in found:
         cancelled[part] = _cancelled(part, found, sizes, cancelled)
-    return math.sqrt(sum(cancelled[one] * cancelled[one] for one in trees))
+    return hypot3(*(cancelled[one] for one in trees))
 
 
 def _size(low, high):

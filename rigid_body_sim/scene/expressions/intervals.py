@@ -11,9 +11,40 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.numerics.functions import exp, sin
 from rigid_body_sim.scene.expressions import tree
+from rigid_body_sim.scene.expressions.functions import hyperbolic_tangent, logarithm, raised
 
 Range = tuple[np.ndarray, np.ndarray]
+
+
+EXP, TANH, LOG, SIN, POWER = range(5)    # of `of_each`
+
+
+@compiled
+def of_each(function, x, y, out):
+    """Fill out with a function of each of many numbers x, or with their powers y.
+
+    The bits are those of an expression.
+    """
+    for k in range(len(x)):
+        if function == EXP:
+            out[k] = exp(x[k])
+        elif function == TANH:
+            out[k] = hyperbolic_tangent(x[k])
+        elif function == LOG:
+            out[k] = logarithm(x[k])
+        elif function == SIN:
+            out[k] = sin(x[k])
+        else:
+            out[k] = raised(x[k], y)
+
+
+def _each(function, x, y=0.0):
+    x, out = np.ascontiguousarray(x), np.empty(len(x))
+    of_each(function, x, y, out)
+    return out
 
 
 def ranges(trees: tuple[tree.Term, ...], given: dict[str, Range]) -> dict[tree.Term, Range]:
@@ -43,11 +74,12 @@ def ranges(trees: tuple[tree.Term, ...], given: dict[str, Range]) -> dict[tree.T
 
 def fixed(value: float, like: np.ndarray) -> Range:
     """Return the intervals of a number, as many as an array has entries."""
-    return np.full_like(like, value), np.full_like(like, value)
+    filled = np.zeros(len(like)) + value
+    return filled, filled
 
 
 def _any(like):
-    return np.full_like(like, -np.inf), np.full_like(like, np.inf)
+    return fixed(-math.inf, like)[0], fixed(math.inf, like)[0]
 
 
 def _operation(part, operands):
@@ -69,13 +101,13 @@ def _operation(part, operands):
         case '^':
             return _power(a, b, c, d)
         case 'exp':
-            return np.exp(a), np.exp(b)
+            return _each(EXP, a), _each(EXP, b)
         case 'tanh':
-            return np.tanh(a), np.tanh(b)
+            return _each(TANH, a), _each(TANH, b)
         case 'sqrt':
             return np.sqrt(np.maximum(a, 0.0)), np.sqrt(np.maximum(b, 0.0))
         case 'log':
-            return np.log(np.maximum(a, 0.0)), np.log(np.maximum(b, 0.0))
+            return _logarithm(a), _logarithm(b)
         case 'sin':
             return _sine(a, b)
         case 'cos':
@@ -91,12 +123,12 @@ def _product(a, b, c, d):
 
 def _power(a, b, c, d):
     """Return the intervals of [a, b] to a power that does not change; else all numbers."""
-    power = c.flat[0]
-    if not (np.array_equal(c, d) and (c == power).all()):
+    power = float(c[0])
+    if not ((c == power).all() and (d == power).all()):
         return _any(a)
     if power != math.floor(power):
         a, b = np.maximum(a, 0.0), np.maximum(b, 0.0)
-    ends = np.power(a, power), np.power(b, power)
+    ends = _each(POWER, a, power), _each(POWER, b, power)
     low, high = np.minimum(*ends), np.maximum(*ends)
     through = (a < 0.0) & (b > 0.0)
     if power < 0.0:
@@ -104,11 +136,19 @@ def _power(a, b, c, d):
     return np.where(through & (power % 2.0 == 0.0), 0.0, low), high
 
 
+def _logarithm(x):
+    """Return the logarithm of positive numbers, and of others that of zero."""
+    return np.where(x > 0.0, _each(LOG, np.where(x > 0.0, x, 1.0)), -math.inf)
+
+
 def _sine(a, b):
     """Return the intervals of the sine of [a, b]."""
-    low, high = np.minimum(np.sin(a), np.sin(b)), np.maximum(np.sin(a), np.sin(b))
+    ends = _each(SIN, a), _each(SIN, b)
+    low, high = np.minimum(*ends), np.maximum(*ends)
+    whole = b - a >= 2.0 * math.pi
 
     def meets(place):
         """Return whether a place, give and take whole turns, lies within."""
-        return np.floor((b - place) / (2.0 * math.pi)) >= np.ceil((a - place) / (2.0 * math.pi))
+        return whole | (np.floor((b - place) / (2.0 * math.pi))
+                        >= np.ceil((a - place) / (2.0 * math.pi)))
     return (np.where(meets(-0.5 * math.pi), -1.0, low), np.where(meets(0.5 * math.pi), 1.0, high))

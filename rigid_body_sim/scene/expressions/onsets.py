@@ -10,6 +10,8 @@ kinks are left out: their kinks are located as the body meets them.
 """
 
 import functools
+import math
+import operator
 
 import numpy as np
 
@@ -20,9 +22,9 @@ from rigid_body_sim.scene.expressions.source import KINKED, TIME
 LIVELY = {'exp', 'tanh', '/', '^'}
 """Operations that may be constant for long and change fast later."""
 SMALL = range(9)    # powers that are not so flat
-STRETCHES = np.array([0.0, *(2.0 ** np.arange(-4.0, 24.0))])
+STRETCHES = np.array([0.0, *(math.ldexp(1.0, k) for k in range(-4, 24))])
 """Edges of the stretches of time that are looked at, s: up to half a year."""
-SAMPLES = 64        # of a stretch, for the largest value
+SAMPLES = 16        # of a stretch, for the largest value
 RESOLVED = 0.25     # share of the largest value by which the function changes within a part
 STEEP = 2.0 ** 8    # factor by which it changes within a part, at most, of what is not nothing
 NOTHING = 2.0 ** -48    # share of the largest value: a change of so much is none
@@ -116,7 +118,8 @@ def _parts(function):
         largest = max(largest, _finite(at[2]))
         rests, resolved = _judged(within, at, largest, halving >= SMALLEST)
         left = ~resolved & (halving < HALVINGS)
-        lively |= np.bincount(stretch[left], minlength=len(lively)) > MOST
+        several = stretch[left][:, np.newaxis] == np.arange(len(lively))
+        lively |= np.count_nonzero(several, axis=0) > MOST
         twice = np.flatnonzero(lively[1:] & lively[:-1])
         last = twice[0] if len(twice) else len(lively)
         done.append((begin[~left], (end - begin)[~left], stretch[~left], rests[~left]))
@@ -124,15 +127,15 @@ def _parts(function):
         if not left.any():
             break
         begin, middle, end = begin[left], middle[left], end[left]
-        begin, end = np.sort(np.r_[begin, middle]), np.sort(np.r_[middle, end])
+        begin, end = np.sort(np.append(begin, middle)), np.sort(np.append(middle, end))
         stretch = np.repeat(stretch[left], 2)
     begin, length, stretch, rests = (
         np.concatenate(column) for column in zip(*done, strict=True))
     kept = ~lively[stretch] & (stretch <= last)
     throughout = np.flatnonzero(lively[:last + 1])
-    begin = np.r_[begin[kept], STRETCHES[throughout]]
-    length = np.r_[length[kept], np.diff(STRETCHES)[throughout] / MOST]
-    rests = np.r_[rests[kept], np.zeros(len(throughout), dtype=bool)]
+    begin = np.append(begin[kept], STRETCHES[throughout])
+    length = np.append(length[kept], np.diff(STRETCHES)[throughout] / MOST)
+    rests = np.append(rests[kept], np.zeros(len(throughout), dtype=bool))
     order = np.argsort(begin)
     return begin[order].tolist(), length[order].tolist(), rests[order].tolist()
 
@@ -159,7 +162,7 @@ def _judged(within, at, largest, is_small):
                  | (nothing[0] & nothing[1] & (size > STEEP * NOTHING * largest)))
     if is_small:    # what overflows there on the way may still be nothing
         unseen = [one | ~np.isfinite(size) for one, size in zip(nothing, at, strict=True)]
-        rests |= ~np.isfinite(change) & np.logical_and.reduce(unseen)
+        rests |= ~np.isfinite(change) & functools.reduce(operator.and_, unseen)
     return rests, rests | ((change <= RESOLVED * largest) & ~steep)
 
 

@@ -39,8 +39,8 @@ def test_steps_end_before_a_pulse_and_within_it(text, middle, width):
 
 @pytest.mark.parametrize('text', [
     '3', 't', 'sin(3*t)', 'sin(300*t)^2', 'exp(-t/10)', 'exp(-t)*sin(300*t)', 't*exp(-t)',
-    'tanh(t)', 't^3 - 2*t', '1/t', 'log(t)/t', '1/(2 + cos(t))', 'sqrt(t)/(1 + t)', 'wx', 'exp(-x^2)',
-    'exp(-((t - x)/0.02)^2)', 'cos(2*t)*exp(-t/5)', 'exp(3)'])
+    'tanh(t)', 't^3 - 2*t', '1/t', 'log(t)/t', '1/(2 + cos(t))', 'sqrt(t)/(1 + t)', 'wx',
+    'exp(-x^2)', 'exp(-((t - x)/0.02)^2)', 'cos(2*t)*exp(-t/5)', 'exp(3)'])
 def test_what_changes_from_the_start_on_or_with_the_state_has_none(text):
     assert of(text) == ()
 
