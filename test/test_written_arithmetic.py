@@ -25,9 +25,9 @@ CORRECT = {
     'np': 'abs add append arange argmax argsort array array_equal asarray ascontiguousarray '
           'broadcast_arrays ceil concatenate count_nonzero cumsum diag diagonal diff divide empty '
           'empty_like errstate eye finfo flatnonzero float64 floor frexp frombuffer fromiter full '
-          'inf int64 intp isfinite isnan maximum minimum nan ndarray newaxis nonzero ones ones_like '
-          'outer prod random ravel repeat reshape roll searchsorted sort sqrt square stack tile '
-          'uint8 uint32 uint64 unique where zeros'}
+          'inf int64 intp isfinite isnan maximum minimum nan ndarray newaxis nonzero ones '
+          'ones_like outer prod random ravel repeat reshape roll searchsorted sort sqrt square '
+          'stack tile uint8 uint32 uint64 unique where zeros'}
 CORRECT = {module: set(names.split()) for module, names in CORRECT.items()}
 LIBRARIES = ('scipy', 'mpmath', 'cmath', 'statistics', 'sympy')
 REDUCTIONS = ('dot', 'mean', 'std', 'var', 'trace')
