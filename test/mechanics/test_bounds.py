@@ -10,10 +10,12 @@ from near import near
 from rigid_body_sim.mechanics.bounds import (
     angles_turned,
     borne,
+    cancelling,
     drive,
     drives,
     passed,
     pushed_unbounded,
+    resting,
     swing_momentum,
     swing_rate,
     unbounded,
@@ -136,12 +138,27 @@ def test_a_body_passes_through_what_torques_gave_until_they_jumped():
     """5 N m for 2 s, then another 3 N m: 10 N m s at 3 s, 13 N m s at 4 s, 100/8 and 169/8 J."""
     stopped = scene(
         'free', 'torque: {times: [1, 3, 4], values: [[0, 3, 4], [0, 0, -3], [0, 0, 0]]}')
-    assert passed(stopped, 2.9, 0.0) == (0.0, 0.0)
+    at_rest = 2.0 * 2.0 ** -120, 4.0 * 2.0 ** -60    # 2^-60 rad/s
+    assert passed(stopped, 2.9, 0.0) == resting(stopped) == at_rest
     assert passed(stopped, 3.0, 0.0) == (12.5, 10.0)
     assert passed(stopped, 100.0, 0.0) == (169.0 / 8.0, 13.0)
-    assert passed(scene('free', TORQUE), 100.0, 0.0) == (0.0, 0.0)
+    assert passed(scene('free', TORQUE), 100.0, 0.0) == at_rest
     let_go = scene(HINGE, 'gravity: {g: 10}')
     assert passed(let_go, 1.0, 0.0) == (near(12.0, rel=1e-14), swing_momentum(let_go))
+
+
+def test_terms_that_may_cancel_are_potentials_and_expressions():
+    """1 + tanh is 2 at most, on the least moment; forces count with their levers."""
+    soft = "torque: {value: [0, 0, '3*(1 + tanh(t - 5))']}"
+    held = "torque: {value: [0, 0, '1 - 2*angle']}"
+    assert cancelling(scene('free', soft), 100.0) == near(6.0 / 2.0, rel=1e-15)
+    assert cancelling(scene('free', 'torque: {value: [0, 0, 3]}'), 100.0) == 0.0
+    hinged = scene(HINGE, f'gravity: {{g: 10}}, {held}')
+    assert cancelling(hinged, 100.0) == near(
+        swing_rate(hinged)**2 + (1.0 + 4.0 * math.pi) / 3.18, rel=1e-14)
+    pushed = "force: {value: ['1 - tanh(t)', 0, 0], at: [0, 0, 3]}"
+    lever = math.dist((0.0, 0.0, 3.0), scene('free', soft).body.center_of_mass)
+    assert cancelling(scene('free', pushed), 100.0) == near(2.0 * lever / 2.0, rel=1e-14)
 
 
 def test_a_swing_has_the_momentum_of_its_rate_about_the_largest_moment():

@@ -147,8 +147,8 @@ def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
     found = [Relaxation(4, *draw.normal(size=(2, 3, 3)), [1.0, 2.0, 3.0]),
              Relaxation(10, *draw.normal(size=(2, 2, 2)), [4.0, 5.0])]
     monkeypatch.setattr(collocation, 'stiff_relaxations', lambda scene, size: found)
-    monkeypatch.setattr(collocation, 'swing_rate', lambda scene: 3.0)
-    march = types.SimpleNamespace(WORK=9, SIZE=13, SWING=5, KEPT=40)
+    monkeypatch.setattr(collocation, 'cancelling', lambda scene, horizon: 9.0)
+    march = types.SimpleNamespace(WORK=9, SIZE=13, CANCELLING=5, KEPT=40)
     stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None)
     control, point = collocation.begin(stepped, march)
     assert CONTROL.load(control.tolist()) == near(Control(2e-11, 0.0, 0.0), rel=1e-14)
@@ -167,8 +167,8 @@ def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
 
 def test_a_march_of_steps_with_an_error_knows_what_rounding_leaves_of_the_acceleration(
         monkeypatch):
-    """2^-51 of its largest: that of all potentials, swing_rate^2, and that of what is borne."""
-    monkeypatch.setattr(one_step, 'swing_rate', lambda scene: 3.0)
+    """2^-51 of its largest: that of terms that may cancel, and that of what is borne."""
+    monkeypatch.setattr(one_step, 'cancelling', lambda scene, horizon: 0.18 * horizon)
     monkeypatch.setattr(one_step, 'borne', lambda scene: 5.0)
     stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None,
                                     method=METHODS['dop8'])
