@@ -13,7 +13,6 @@ import numpy as np
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.intervals import fixed, ranges
-from rigid_body_sim.scene.expressions.source import ATTITUDE
 
 PARTS = 256    # of the time
 
@@ -23,8 +22,8 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
                horizon: float) -> float:
     """Return the size of the terms that may cancel each other in the values of trees.
 
-    The length of the vector of them. Terms whose bounds are not known, as those of rates, do not
-    count, nor does what cancels within a function: that cancels where its argument passes zero.
+    The length of the vector of them. Terms of the state, which may be as small as the motion, do
+    not count, nor does what cancels within a function: there an argument passes zero.
 
     Parameters
     ----------
@@ -36,26 +35,27 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
     if not tree.names(*trees):
         return 0.0
     edges = np.arange(PARTS + 1.0) * (horizon / PARTS)
-    unit, turn = np.ones(PARTS), 2.0 * math.pi * np.ones(PARTS)
-    given = {'t': (edges[:-1], edges[1:]), 'angle': (-turn, turn)}
-    given |= dict.fromkeys(ATTITUDE, (-unit, unit))
-    given |= {name: fixed(value, unit) for name, value in parameters}
+    given = {'t': (edges[:-1], edges[1:])}
+    given |= {name: fixed(value, edges[1:]) for name, value in parameters}
     found = ranges(trees, given)
-    sizes = {part: _size(*found[part]) for part in found}
     cancelled: dict[tree.Term, float] = {}
     for part in found:
-        cancelled[part] = _cancelled(part, found, sizes, cancelled)
+        cancelled[part] = _cancelled(part, found, cancelled)
     return hypot3(*(cancelled[one] for one in trees))
 
 
-def _size(low, high):
-    """Return the largest size within intervals; 0 where it is not known."""
-    size = float(np.maximum(np.abs(low), np.abs(high)).max())
-    return size if size < math.inf else 0.0
+def _sizes(low, high):
+    """Return the largest size within each interval; 0 where it is not known."""
+    sizes = np.maximum(np.abs(low), np.abs(high))
+    return np.where(np.isfinite(sizes), sizes, 0.0)
 
 
-def _cancelled(part, found, sizes, cancelled):
-    """Return the size of the terms that may cancel in a part; those of its operands are known."""
+def _cancelled(part, found, cancelled):
+    """Return the size of the terms that may cancel in a part; those of its operands are known.
+
+    It is that of the time when they are smallest: what explodes later is no reason to follow less
+    closely now.
+    """
     args = part.args
     match part.op:
         case '+' | '-':
@@ -63,16 +63,18 @@ def _cancelled(part, found, sizes, cancelled):
             (a, b), (c, d) = (found[arg] for arg in args)
             if part.op == '-':
                 c, d = -d, -c
-            may = (((a < 0.0) & (d > 0.0)) | ((b > 0.0) & (c < 0.0))).any()
-            return inner + (sizes[args[0]] + sizes[args[1]] if may else 0.0)
+            may = ((a < 0.0) & (d > 0.0)) | ((b > 0.0) & (c < 0.0))
+            sizes = (_sizes(a, b) + _sizes(c, d))[may]
+            return inner + float(sizes.min(initial=math.inf)) if len(sizes) else inner
         case 'negative' | 'abs':
             return cancelled[args[0]]
         case '*':
-            return (cancelled[args[0]] * sizes[args[1]] + cancelled[args[1]] * sizes[args[0]])
+            least = [float(_sizes(*found[arg]).min()) for arg in args]
+            return cancelled[args[0]] * least[1] + cancelled[args[1]] * least[0]
         case '/':
             low, high = found[args[1]]
             if ((low > 0.0) | (high < 0.0)).all():
-                return cancelled[args[0]] / float(np.minimum(np.abs(low), np.abs(high)).min())
+                return cancelled[args[0]] / float(_sizes(low, high).max())
         case 'where' | 'min' | 'max':
             return max(cancelled[arg] for arg in args)
     return 0.0
