@@ -11,7 +11,6 @@ kinks are left out: their kinks are located as the body meets them.
 
 import functools
 import math
-import operator
 
 import numpy as np
 
@@ -56,14 +55,14 @@ def onsets(trees: tuple[tree.Term, ...],
         if (_is_lively(one) and one not in seen and {*TIME} <= tree.names(one) <= able
                 and not {part.op for part in tree.parts(one)} & {*KINKED, 'where'}):
             seen.update(tree.parts(one))
-            times |= set(_begins(*_parts(functools.partial(_slopes, one, known))))
+            [slope] = tree.derivatives(one, TIME)
+            times |= set(_begins(*_parts(functools.partial(_values, slope, known))))
     return tuple(sorted(times)[:MANY])
 
 
-def _slopes(one, known, times):
-    """Return the intervals of the slope of a function of time in intervals of time."""
+def _values(slope, known, times):
+    """Return the intervals of a slope in intervals of time."""
     given = {name: fixed(value, times[0]) for name, value in known.items()}
-    [slope] = tree.derivatives(one, TIME)
     return ranges((slope,), {'t': times} | given)[slope]
 
 
@@ -90,7 +89,7 @@ def _begins(begin, length, rests):
 
 
 def _parts(function):
-    """Return parts of time in which a function hardly changes.
+    """Return parts of time in which a slope hardly changes.
 
     A stretch in which it changes more often than MOST parts can tell is one part, as short as
     those would be. Two such stretches end the search: the function is as lively later.
@@ -98,7 +97,7 @@ def _parts(function):
     Parameters
     ----------
     function : callable
-        Intervals of time (begin and end, s) -> intervals of values.
+        Intervals of time (begin and end, s) -> intervals of the slope.
 
     Returns
     -------
@@ -113,8 +112,10 @@ def _parts(function):
     largest, done = _finite(np.abs(function((samples, samples))[0])), []
     for halving in range(HALVINGS + 1):
         middle, quarter = 0.5 * (begin + end), 0.75 * begin + 0.25 * end
-        within = function((begin, end))
-        at = [np.abs(function((time, time))[0]) for time in (begin, quarter, middle, end)]
+        # in one call: each has a fixed cost
+        points = np.concatenate((begin, quarter, middle, end))
+        low, high = function((np.append(begin, points), np.append(end, points)))
+        within, at = (low[:len(begin)], high[:len(begin)]), np.abs(low[len(begin):]).reshape(4, -1)
         largest = max(largest, _finite(at[2]))
         rests, resolved = _judged(within, at, largest, halving >= SMALLEST)
         left = ~resolved & (halving < HALVINGS)
@@ -147,22 +148,21 @@ def _judged(within, at, largest, is_small):
     ----------
     within : tuple of 2 arrays
         The least and the largest value in each part.
-    at : list of 4 arrays
+    at : array (4, parts)
         The sizes at its beginning, quarter, middle and end.
     largest : float
         The largest size of all.
     is_small : bool
         Whether the parts are so small that points tell of one in which the slope overflows.
     """
-    (low, high), nothing = within, [size <= NOTHING * largest for size in at]
+    (low, high), nothing = within, at <= NOTHING * largest
     with np.errstate(invalid='ignore', over='ignore'):    # infinite ends
         change, size = high - low, np.maximum(-low, high)
         rests = np.maximum(change, size) <= NOTHING * largest
         steep = (((low > 0.0) & (high > STEEP * low)) | ((high < 0.0) & (low < STEEP * high))
                  | (nothing[0] & nothing[1] & (size > STEEP * NOTHING * largest)))
     if is_small:    # what overflows there on the way may still be nothing
-        unseen = [one | ~np.isfinite(size) for one, size in zip(nothing, at, strict=True)]
-        rests |= ~np.isfinite(change) & functools.reduce(operator.and_, unseen)
+        rests |= ~np.isfinite(change) & (nothing | ~np.isfinite(at)).all(axis=0)
     return rests, rests | ((change <= RESOLVED * largest) & ~steep)
 
 
