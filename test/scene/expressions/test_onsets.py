@@ -6,6 +6,7 @@ import pytest
 
 from rigid_body_sim.scene.expressions import reader
 from rigid_body_sim.scene.expressions.onsets import MANY, onsets
+from rigid_body_sim.scene.scene import parse_scene
 
 
 def of(*texts, **parameters):
@@ -68,3 +69,23 @@ def test_pulses_that_come_again_and_again_are_found_up_to_so_many():
         assert (np.abs(found - middle) < 0.95).sum() >= 6
         # before it is more than a hundredth
         assert found[found > middle - np.pi / 2 + 0.1][0] < middle - 0.38
+
+
+PULSE = '1e-3*exp(-((t - 50)/0.02)^2)'
+
+
+@pytest.mark.parametrize(('effect', 'constraint'), [
+    (f"torque: {{value: [0, '{PULSE}', 0]}}", 'free'),
+    (f"force: {{value: [0, '{PULSE}', 0], at: [1, 0, 0]}}", 'free'),
+    (f"magnetic: {{moment: [0, 0, 1], field: ['{PULSE}', 0, 0]}}", 'pivot'),
+    ('', f"{{pivot: {{motion: [0, 0, '{PULSE}']}}}}")])
+def test_steps_end_there_whatever_acts(effect, constraint):
+    """The acceleration of a path has the onsets of its own second derivative."""
+    body = '{mass: 1, inertia: [1, 2, 3], center_of_mass: [0, 0, 1]}'
+    scene = parse_scene(f'scene: s\nbody: {body}\nconstraint: {constraint}\n'
+                        f'effects: [{effect}]\ninitial: {{}}\n')
+    [acting] = [one for one in scene.acting if one.breakpoints]
+    found = np.array(acting.breakpoints)
+    assert found[0] < 49.88 and ((found > 49.88) & (found < 50.1)).sum() >= 6
+    if effect:
+        assert acting.breakpoints == of('exp(-((t - 50)/0.02)^2)')
