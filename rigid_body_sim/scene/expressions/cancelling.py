@@ -41,7 +41,8 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
     cancelled: dict[tree.Term, float] = {}
     for part in found:
         cancelled[part] = _cancelled(part, found, cancelled)
-    return hypot3(*(cancelled[one] for one in trees))
+    size = hypot3(*(cancelled[one] for one in trees))
+    return size if size < math.inf else 0.0
 
 
 def _sizes(low, high):
@@ -74,7 +75,7 @@ def _cancelled(part, found, cancelled):
         case '/':
             low, high = found[args[1]]
             if ((low > 0.0) | (high < 0.0)).all():
-                return cancelled[args[0]] / float(_sizes(low, high).max())
+                return cancelled[args[0]] / float(np.maximum(np.abs(low), np.abs(high)).max())
         case 'where' | 'min' | 'max':
             return max(cancelled[arg] for arg in args)
     return 0.0

@@ -124,7 +124,7 @@ def _product(a, b, c, d):
 def _power(a, b, c, d):
     """Return the intervals of [a, b] to a power that does not change; else all numbers."""
     power = float(c[0])
-    if not ((c == power).all() and (d == power).all()):
+    if not (math.isfinite(power) and (c == power).all() and (d == power).all()):
         return _any(a)
     if power != math.floor(power):
         a, b = np.maximum(a, 0.0), np.maximum(b, 0.0)
