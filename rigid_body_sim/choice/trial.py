@@ -265,7 +265,10 @@ class Trial:
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
         if float(errors.max()) < MAGNIFIED:
             best, prototype = self._states(finest), self.prototype.at(finest, self._most)
-            lost = rounding.lost(self._scene, prototype, times, best)
+            try:
+                lost = rounding.lost(self._scene, prototype, times, best)
+            except TooMuchWork:    # of a body that no longer rests where its start is moved
+                return forecast.Forecast(None, None)
             # what moving the start does grows with time, whatever drives the body
             turned = rounding.of_angle_turned(self._scene, prototype, best, times)
             last = max(float(lost.max()) * forecast.turned_later(self._scene, best, self._longer),

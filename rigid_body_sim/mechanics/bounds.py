@@ -167,15 +167,17 @@ def borne(scene):
 
 
 def cancelling(scene, horizon):
-    """Return the angular acceleration of terms that may cancel each other, rad/s^2.
+    """Return the accelerations of terms that may cancel each other, rad/s^2 and m/s^2.
 
-    They are potentials, with swing_rate^2 = 4 U/I, and expressions up to a time (s). What is left
-    of them is rounding.
+    They are potentials, with swing_rate^2 = 4 U/I, springs, and expressions up to a time (s). What
+    is left of them is rounding.
     """
-    body, constraint, swing = scene.body, scene.constraint, swing_rate(scene)
-    torque = reduce(add, (effect.cancelling(body, constraint, horizon)
-                          for effect in scene.effects), 0.0)
-    return swing * swing + (torque / _least_moment(scene) if torque > 0.0 else 0.0)
+    frame, swing = scene.frame, swing_rate(scene)
+    found = [effect.cancelling(frame, scene.initial, horizon) for effect in scene.effects]
+    torque = reduce(add, (one.torque for one in found), 0.0)
+    force = reduce(add, (one.force for one in found), 0.0) if frame.moves else 0.0
+    return (swing * swing + (torque / _least_moment(scene) if torque > 0.0 else 0.0),
+            force / scene.body.mass if force > 0.0 else 0.0)
 
 
 @compiled

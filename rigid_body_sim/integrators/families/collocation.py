@@ -93,7 +93,8 @@ def _of_unknowns(size, groups, parameter_count):
         'along': _along(size, places['CURVE']),
         'end_of_curve': _end_of_curve(size, places['CURVE']),
         'measure': _measure(groups), 'by_group': _by_group(groups), 'grown': _grown(groups),
-        'fastest': unroll.fastest_source(groups), 'first_scales': _first_scales(groups)}
+        'fastest': unroll.fastest_source(groups), 'first_scales': _first_scales(groups),
+        'pulled': _pulled(groups), 'FLIGHT': f'FLIGHT = {unroll.flight(groups)!r}\n'}
 
 
 def _places(size):
@@ -146,8 +147,12 @@ def begin(stepped, march):
         part[relaxing.DECAY:relaxing.DECAY + n] = one.rates
     tolerance = stepped.accuracy / stepped.horizon if stepped.accuracy is not None else 0.0
     CONTROL.store(control, Control(tolerance, stepped.step or 0.0, 0.0))
-    control[march.CANCELLING] = cancelling(stepped.scene, stepped.horizon)
-    return control, np.zeros(march.KEPT + STAGES * march.SIZE)
+    point = np.zeros(march.KEPT + STAGES * march.SIZE)
+    turning, moving = cancelling(stepped.scene, stepped.horizon)
+    control[march.TURNING], control[march.MOVING] = turning, moving
+    if stepped.accuracy is not None:
+        one_step.set_least_scales(stepped, moving, march.FLIGHT, point)
+    return control, point
 
 
 def _function(head, lines, result=None):
@@ -277,13 +282,30 @@ def _grown(groups):
 
 
 def _first_scales(groups):
-    """Return the source of ``first_scales(y, k, h)``.
+    """Return the source of ``first_scales(scales, y, k, h)``.
 
-    The squared scales at y, where a first step h with rates k moves.
+    The squared scales at y, where a first step h with rates k moves, at least `scales`.
     """
-    entries = (f'max({_squares("y[{}]", first, last)}, h * h * ({_squares("k[{}]", first, last)}))'
-               for first, last, absolute in groups if not absolute)
-    return _function('first_scales(y, k, h)', [], _tuple(entries))
+    relative = [(first, last) for first, last, absolute in groups if not absolute]
+    entries = (f'max(scales[{place}], {_squares("y[{}]", first, last)}, '
+               f'h * h * ({_squares("k[{}]", first, last)}))'
+               for place, (first, last) in enumerate(relative))
+    return _function('first_scales(scales, y, k, h)', [], _tuple(entries))
+
+
+def _pulled(groups):
+    """Return the source of ``pulled(turning, moving, h, scales)``.
+
+    What the accelerations of terms that may cancel do in a step, as a share of the first relative
+    group, and of velocity and place.
+    """
+    def share(size, place):
+        least = unroll.NOTHING * unroll.NOTHING
+        return f'({size} / math.sqrt(scales[{place}]) if scales[{place}] > {least!r} else 0.0)'
+    shares = [share('turning * h', 0)]
+    for place, size in zip(unroll.flight(groups), ('moving * h * h', 'moving * h'), strict=False):
+        shares.append(share(size, place))
+    return _function('pulled(turning, moving, h, scales)', [], ' + '.join(shares))
 
 
 def _tree(terms):

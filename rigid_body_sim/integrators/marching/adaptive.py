@@ -32,6 +32,7 @@ load = UNBOUND
 put = UNBOUND
 load_scales = UNBOUND
 put_scales = UNBOUND
+FLIGHT = UNBOUND    # which of the scales are those of place and velocity; (): none
 SIZE = UNBOUND
 ORDER = UNBOUND
 

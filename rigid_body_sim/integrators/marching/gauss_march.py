@@ -5,8 +5,8 @@ A point holds, after its Head (points.py), the unknowns and what their sums lost
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds, after its Control, in CANCELLING the angular acceleration of terms that may cancel
-(rad/s^2, bounds.py), and from WORK on a workspace S:
+`control` holds, after its Control, in TURNING and MOVING the accelerations of terms that may cancel
+(rad/s^2, m/s^2, bounds.py), and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
     RATES       their rates
@@ -68,6 +68,8 @@ by_group = UNBOUND
 grown = UNBOUND
 fastest = UNBOUND
 first_scales = UNBOUND
+pulled = UNBOUND
+FLIGHT = UNBOUND  # which of the scales are those of place and velocity; (): none
 along = UNBOUND
 end_of_curve = UNBOUND
 SIZE = UNBOUND    # count of the unknowns
@@ -92,8 +94,9 @@ CURVE = UNBOUND
 BETWEEN = UNBOUND
 ASIDE = UNBOUND
 
-CANCELLING = CONTROL.size      # places in `control`
-WORK = CANCELLING + 1
+TURNING = CONTROL.size      # places in `control`
+MOVING = TURNING + 1
+WORK = MOVING + 1
 
 AGAIN = False            # of relax: the stages are not predicted ones
 NEARLY = 1e-9            # share of a fixed step: an end that close to a point is that point
@@ -161,7 +164,7 @@ def begin(p, control, point):
     speed = fastest(y, k)
     h = FIRST / speed if speed > 0.0 else UNMOVED
     point[STEP], point[SWEEPS] = 0.0 if control[FIXED] > 0.0 else h, 1.0
-    put_scales(first_scales(y, k, h), point, SCALES)
+    put_scales(first_scales(load_scales(point, SCALES), y, k, h), point, SCALES)
 
 
 @compiled
@@ -214,8 +217,8 @@ def solve(p, S, y, h, last, sweeps, allowed, pull, scales):
     allowed : float
         Change at which it is enough.
     pull : float
-        What terms that may cancel do in the step, as a share of the first relative group: where
-        they nearly do, they leave their rounding.
+        What terms that may cancel do in the step, as a share of what they move: where they nearly
+        do, they leave their rounding.
     scales : tuple of floats
         Squared scales.
 
@@ -322,8 +325,8 @@ def _fastest_square(c7, c6, c5, c4, noise):
 
 @compiled
 def _pull(control, h, scales):
-    """Return what terms that may cancel do in a step, as a share of the first relative group."""
-    return control[CANCELLING] * h / math.sqrt(scales[0]) if scales[0] > 0.0 else 0.0
+    """Return what terms that may cancel do in a step, as a share of what they move."""
+    return pulled(control[TURNING], control[MOVING], h, scales)
 
 
 @compiled

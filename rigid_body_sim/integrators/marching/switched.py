@@ -333,7 +333,8 @@ class Switched:
     def _head(self, stretch, course, time):
         head = stretch.head if stretch.rests else course.head(time)
         if head is None:
-            head = np.array([FIRST] + [0.0] * (VALUES - SCALES))
+            _, point, _ = self._bound.parts_of(self._bound.prototype(time))
+            head = np.array([FIRST, *point[SCALES:VALUES]])
         # of a body that was at rest: what time adds up to has the rounding of the clock, and
         # an omega of that size turns the body by less than its accuracy
         scale = SCALES - STEP    # of omega

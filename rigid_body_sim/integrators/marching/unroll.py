@@ -11,6 +11,8 @@ values are formed.
 import functools
 import itertools
 
+from rigid_body_sim.integrators.equations.euler import DRIFT, PLACE
+
 ROUNDING = 2.0 ** -49    # share of an increment: rounding of the sums of error estimates
 # rad/s: below this angular speed relative rates are meaningless, since the body is still starting
 # from rest
@@ -152,6 +154,12 @@ def put_source(name, size):
             '',
         ]
     )
+
+
+def flight(groups):
+    """Return where among the relative groups those of place and velocity are; none: ()."""
+    firsts = [first for first, _, absolute in groups if not absolute]
+    return (firsts.index(PLACE), firsts.index(DRIFT)) if PLACE in firsts else ()
 
 
 def _rows(method):

@@ -10,12 +10,13 @@ from typing import ClassVar, Self
 
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
-from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Pull
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.effects.protocol import Acting, Cancelling, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, path, tree
 from rigid_body_sim.scene.expressions.cancelling import cancelling
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.state import State
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,10 @@ class Carrying(Effect):
         """The times at which it begins to change after it was constant for long, s."""
         return onsets(self.trees, self.parameters)
 
-    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
-        """Return the moment of its terms that may cancel, N m."""
-        lever = hypot3(*constraint.arm(body))
-        return cancelling(self.trees, self.parameters, horizon) * lever
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the moment of its terms that may cancel."""
+        size = cancelling(self.trees, self.parameters, horizon)
+        return Cancelling(size * hypot3(*frame.arm), 0.0)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the torque; there is none about the centre of mass, and none in a fixed frame."""

@@ -6,16 +6,18 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential, Pull
+from rigid_body_sim.scene.effects.protocol import Acting, Cancelling, Effect, Potential, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
-from rigid_body_sim.scene.expressions.cancelling import cancelling
+from rigid_body_sim.scene.expressions.cancelling import balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import described, mapping_of
+from rigid_body_sim.scene.state import State
 
 
 def trees_of(value: list[Expression], where: str) -> tuple[tree.Term, ...]:
@@ -75,9 +77,9 @@ class ExpressedTorque(Effect):
         """The times at which it begins to change after it was constant for long, s."""
         return onsets(self.trees, self.parameters)
 
-    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
-        """Return the size of its terms that may cancel, N m."""
-        return cancelling(self.trees, self.parameters, horizon)
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the size of its terms that may cancel."""
+        return Cancelling(balancing(self.trees, self.parameters, frame, start, horizon), 0.0)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the couple; one of zero does not act."""
@@ -89,6 +91,16 @@ class ExpressedTorque(Effect):
     def series(self, frame: Frame, time: float) -> Pull:
         """Return the couple."""
         return formulas.torque(self.trees, self.frame, self.parameters, frame)
+
+
+def of_pulls(pulls: tuple[tuple[tree.Term, ...], ...], parameters: tuple[tuple[str, float], ...],
+             frame: Frame, start: State, horizon: float) -> Cancelling:
+    """Return the sizes of the terms of a force at the origin and the torque about it (`gradient`).
+
+    More than four arguments: those of `balancing`.
+    """
+    force, torque = (balancing(trees, parameters, frame, start, horizon) for trees in pulls)
+    return Cancelling(torque + force * hypot3(*frame.point), force)
 
 
 @dataclass(frozen=True)
@@ -125,6 +137,11 @@ class PotentialEnergy(Effect):
                            'angle: write what depends on time or velocity as a force or a torque')
         refuse_beside_hinge((energy,), constraint, where)
         return cls(energy, settings['energy'].parameters)
+
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the size of the terms of its force and torque at the start."""
+        return of_pulls(actions.gradient(self.energy, frame), self.parameters, frame, start,
+                        horizon)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return force and torque."""

@@ -11,13 +11,14 @@ from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull
+from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Cancelling, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
-from rigid_body_sim.scene.expressions.cancelling import cancelling
+from rigid_body_sim.scene.expressions.cancelling import balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
+from rigid_body_sim.scene.state import State
 
 
 @dataclass(frozen=True)
@@ -87,9 +88,10 @@ class Force(Effect):
         held = constraint.holds_a_point
         return hypot3(*minus(self.at, constraint.point(body) if held else body.center_of_mass))
 
-    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
-        """Return the moment of its terms that may cancel, N m."""
-        return cancelling(self.trees, self.parameters, horizon) * self._reach(body, constraint)
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the size of its terms that may cancel, and their moment."""
+        size = balancing(self.trees, self.parameters, frame, start, horizon)
+        return Cancelling(size * hypot3(*minus(self.at, frame.point)), size)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

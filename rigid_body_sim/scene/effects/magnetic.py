@@ -8,14 +8,23 @@ from typing import Any, ClassVar, Self
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.expressed import refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Potential, Pull
+from rigid_body_sim.scene.effects.expressed import of_pulls, refuse_beside_hinge, trees_of
+from rigid_body_sim.scene.effects.protocol import (
+    NOTHING_CANCELS,
+    Acting,
+    Bounds,
+    Cancelling,
+    Effect,
+    Potential,
+    Pull,
+)
 from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.expressions.source import PLACE, STATE_NAMES, TIME
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
+from rigid_body_sim.scene.state import State
 
 
 @dataclass(frozen=True)
@@ -64,6 +73,13 @@ class Magnetic(Effect):
     def breakpoints(self) -> tuple[float, ...]:
         """The times at which it begins to change after it was constant for long, s."""
         return onsets((self.energy,), self.parameters)
+
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the size of the terms of a field that changes; one that does not has bounds."""
+        if self.most > 0.0:
+            return NOTHING_CANCELS
+        return of_pulls(actions.gradient(self.energy, frame, self.turn), self.parameters, frame,
+                        start, horizon)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return torque and force."""

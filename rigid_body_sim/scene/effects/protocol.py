@@ -17,6 +17,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.expressions.tree import ZERO, Term
 from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.state import State
 
 Vector = tuple[float, float, float]
 
@@ -196,6 +197,24 @@ class Bounds(NamedTuple):
     pieces: tuple[tuple[float, float], ...] = ()
 
 
+class Cancelling(NamedTuple):
+    """How large terms are that may cancel each other.
+
+    Attributes
+    ----------
+    torque : float
+        Terms of the torque about the reference point, N m.
+    force : float
+        Terms of the force on a body that forces move, N.
+    """
+
+    torque: float
+    force: float
+
+
+NOTHING_CANCELS = Cancelling(0.0, 0.0)
+
+
 class Contact(NamedTuple):
     """The contact of a body with a table.
 
@@ -364,13 +383,13 @@ class Effect(Protocol):
         """The torque with which it holds a body on a hinge at rest, N m."""
         return 0.0
 
-    def cancelling(self, body: Body, constraint: Constraint, horizon: float) -> float:
-        """Return the size of terms that may cancel each other up to a time (s), as a torque, N m.
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return how large terms are that may cancel each other up to a time (s).
 
-        What is left of them is rounding, which no step is short enough to follow. Potentials that
-        have bounds need not say so.
+        What is left of them is rounding, which no step is short enough to follow. Terms of place
+        and attitude count as they are at the start. Potentials that have bounds need not say so.
         """
-        return 0.0
+        return NOTHING_CANCELS
 
     @property
     def contact(self) -> Contact | None:

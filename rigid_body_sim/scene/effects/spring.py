@@ -6,13 +6,18 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
+from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
-from rigid_body_sim.scene.effects.protocol import Acting, Effect, Potential, Pull
+from rigid_body_sim.scene.effects.expressed import of_pulls
+from rigid_body_sim.scene.effects.protocol import Acting, Cancelling, Effect, Potential, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
+from rigid_body_sim.scene.expressions.cancelling import balancing
 from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import NUMBER, VECTOR, described, mapping_of
+from rigid_body_sim.scene.state import State
 
 COEFFICIENT = {'type': 'number', 'minimum': 0}
 
@@ -75,6 +80,13 @@ class Spring(Effect):
         energy, pull, damper = law('world')
         _, *held = law('body')
         return cls(energy, pull, damper, (x, y, z), vectors.total(*held) if c else held[0])
+
+    def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
+        """Return the size of the terms of its pull at the start, and their moment."""
+        if self.at is None:
+            return of_pulls(actions.gradient(self.energy, frame), (), frame, start, horizon)
+        size = balancing(self.pull, (), frame, start, horizon)
+        return Cancelling(size * hypot3(*minus(self.at, frame.point)), size)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the pull and the damping."""

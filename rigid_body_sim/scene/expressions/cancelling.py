@@ -2,7 +2,8 @@
 """How large terms of an expression are that may cancel each other.
 
 What is left of ``1 + tanh((t - 5)/0.1)`` at first, and of ``-5*(angle - 1)`` in the end, is the
-rounding of terms as large as 1 and 5. No step is short enough to follow it.
+rounding of terms as large as 1 and 5. No step is short enough to follow it. The same is left of a
+spring and the weight that it carries.
 """
 
 import functools
@@ -10,14 +11,19 @@ import math
 
 import numpy as np
 
-from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.functions import atan2, hypot3
+from rigid_body_sim.numerics.rotations import multiply
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.expressions import tree
 from rigid_body_sim.scene.expressions.intervals import fixed, ranges
+from rigid_body_sim.scene.expressions.source import ATTITUDE, PLACE, STATE_NAMES
+from rigid_body_sim.scene.frame import Frame
+from rigid_body_sim.scene.state import State
 
 PARTS = 256    # of the time
+POSE = {*PLACE, *ATTITUDE, 'angle'}
 
 
-@functools.lru_cache(maxsize=256)
 def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float], ...],
                horizon: float) -> float:
     """Return the size of the terms that may cancel each other in the values of trees.
@@ -32,8 +38,49 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
     horizon : float
         The time goes on up to there, s.
     """
+    return _sizes_in(trees, parameters, horizon)[0]
+
+
+def balancing(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float], ...],
+              frame: Frame, start: State, horizon: float) -> float:
+    """Return the size of the terms of a law, which others may balance where a body starts.
+
+    Of a law of place, attitude or the angle of a hinge its values count, and what may cancel in
+    them, where the body is at first, as if it rested there; or what may cancel wherever it is.
+
+    Parameters
+    ----------
+    trees, parameters, horizon
+        As above.
+    frame : Frame
+    start : State
+    """
+    anywhere = cancelling(trees, parameters, horizon)
+    if tree.names(*trees).isdisjoint(POSE):
+        return anywhere
+    inner, values = _sizes_in(trees, (*parameters, *_at_rest(frame, start)), horizon)
+    return max(anywhere, inner + values)
+
+
+def _at_rest(frame, start):
+    """Return the names of the state with their numbers where a body starts, but at rest."""
+    orientation = tuple(map(float, start.orientation))
+    origin = map(float, start.position)
+    found = dict.fromkeys(STATE_NAMES, 0.0) | dict(
+        zip((*PLACE, *ATTITUDE), (*origin, *orientation), strict=True))
+    del found['t']
+    if frame.hinge is not None:
+        x, y, z, w = frame.hinge.zero
+        *axis, along = multiply(-x, -y, -z, w, *orientation)
+        found['angle'] = 2.0 * atan2(dot(frame.hinge.axis, axis), along)
+    return found.items()
+
+
+@functools.lru_cache(maxsize=256)
+def _sizes_in(trees, parameters, horizon):
+    """Return the size of terms that may cancel in the values of trees, and of the values."""
     if not tree.names(*trees):
-        return 0.0
+        return 0.0, 0.0
     edges = np.arange(PARTS + 1.0) * (horizon / PARTS)
     given = {'t': (edges[:-1], edges[1:])}
     given |= {name: fixed(value, edges[1:]) for name, value in parameters}
@@ -41,8 +88,10 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
     cancelled: dict[tree.Term, float] = {}
     for part in found:
         cancelled[part] = _cancelled(part, found, cancelled)
-    size = hypot3(*(cancelled[one] for one in trees))
-    return size if size < math.inf else 0.0
+    sizes = (hypot3(*(cancelled[one] for one in trees)),
+             hypot3(*(float(_sizes(*found[one]).min()) for one in trees)))
+    inner, values = (size if size < math.inf else 0.0 for size in sizes)
+    return inner, values
 
 
 def _sizes(low, high):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The kernels that families write for a number of unknowns, beside NumPy."""
 
+import math
 import types
 from fractions import Fraction
 
@@ -9,6 +10,7 @@ import pytest
 from near import near
 
 from rigid_body_sim.integrators import METHODS
+from rigid_body_sim.integrators.equations import flying, hinged, turning
 from rigid_body_sim.integrators.equations.relaxation import Relaxation
 from rigid_body_sim.integrators.families import (
     collocation,
@@ -20,7 +22,7 @@ from rigid_body_sim.integrators.families import (
     scipy_methods,
 )
 from rigid_body_sim.integrators.marching import relaxing, unroll
-from rigid_body_sim.integrators.marching.points import CONTROL, VALUES, Control
+from rigid_body_sim.integrators.marching.points import CONTROL, SCALES, VALUES, Control
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
@@ -104,8 +106,10 @@ def test_errors_count_by_groups_over_what_they_have_met():
 def test_scales_are_the_largest_squares_that_were_met(scales, h):
     y, moved = ([part[2:4] @ part[2:4], part[4] ** 2] for part in (A, h * B))
     assert made(collocation._grown(GROUPS))(scales, A) == near(np.maximum(scales, y), rel=1e-14)
-    found = made(collocation._first_scales(GROUPS))(A, B, h)
+    first = made(collocation._first_scales(GROUPS))
+    found = first((0.0, 0.0), A, B, h)
     assert found == near(np.maximum(y, moved), rel=1e-14)
+    assert first(scales, A, B, h) == near(np.max([scales, y, moved], axis=0), rel=1e-14)
     found = made(power_series._grown(RELATIVE))(scales, A, B, h)
     assert found == near(np.max([scales, y, moved], axis=0), rel=1e-14)
 
@@ -147,12 +151,15 @@ def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
     found = [Relaxation(4, *draw.normal(size=(2, 3, 3)), [1.0, 2.0, 3.0]),
              Relaxation(10, *draw.normal(size=(2, 2, 2)), [4.0, 5.0])]
     monkeypatch.setattr(collocation, 'stiff_relaxations', lambda scene, size: found)
-    monkeypatch.setattr(collocation, 'cancelling', lambda scene, horizon: 9.0)
-    march = types.SimpleNamespace(WORK=9, SIZE=13, CANCELLING=5, KEPT=40)
+    monkeypatch.setattr(collocation, 'cancelling', lambda scene, horizon: (9.0, 7.0))
+    march = types.SimpleNamespace(WORK=9, SIZE=13, TURNING=5, MOVING=6, KEPT=40, FLIGHT=(1, 2))
     stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None)
     control, point = collocation.begin(stepped, march)
     assert CONTROL.load(control.tolist()) == near(Control(2e-11, 0.0, 0.0), rel=1e-14)
-    assert (control[5], len(point)) == (9.0, 40 + 8 * 13)
+    assert (*control[5:7], len(point)) == (9.0, 7.0, 40 + 8 * 13)
+    assert point[SCALES + 1:SCALES + 3].tolist() == least_scales(7.0)
+    point[SCALES + 1:SCALES + 3] = 0.0
+    assert not point.any()
     parts = control[9 + collocation._end(collocation._places(13)):].reshape(2, relaxing.PART)
     for part, one in zip(parts, found, strict=True):
         size = len(one.rates) ** 2
@@ -161,23 +168,49 @@ def test_a_march_of_gauss_begins_with_what_drag_relaxes(monkeypatch):
         first = relaxing.DECAY
         assert part[first:first + len(one.rates)].tolist() == one.rates
     fixed = types.SimpleNamespace(scene=None, accuracy=None, horizon=50.0, step=0.02)
-    control, _ = collocation.begin(fixed, march)
+    control, point = collocation.begin(fixed, march)
+    assert not point.any()
     assert CONTROL.load(control.tolist()) == Control(0.0, 0.02, 0.0)
 
 
 def test_a_march_of_steps_with_an_error_knows_what_rounding_leaves_of_the_acceleration(
         monkeypatch):
     """2^-51 of its largest: that of terms that may cancel, and that of what is borne."""
-    monkeypatch.setattr(one_step, 'cancelling', lambda scene, horizon: 0.18 * horizon)
+    monkeypatch.setattr(one_step, 'cancelling', lambda scene, horizon: (0.18 * horizon, 7.0))
     monkeypatch.setattr(one_step, 'borne', lambda scene: 5.0)
     stepped = types.SimpleNamespace(scene=None, accuracy=1e-9, horizon=50.0, step=None,
                                     method=METHODS['dop8'])
-    control, point = one_step.begin(stepped, types.SimpleNamespace(SIZE=7))
+    march = types.SimpleNamespace(SIZE=7, FLIGHT=())
+    control, point = one_step.begin(stepped, march)
     assert CONTROL.load(control[:CONTROL.size].tolist()) == near(
         Control(2e-11, 0.0, 0.0), rel=1e-15)
     assert control[CONTROL.size] == 14.0 * 2.0 ** -51
     assert control[CONTROL.size + 1:].tolist() == list(unroll.weights(METHODS['dop8']))
     assert (len(point), any(point)) == (VALUES + 14, False)
+    march.FLIGHT = 2, 1
+    _, point = one_step.begin(stepped, march)
+    assert point[SCALES + 1:SCALES + 3].tolist()[::-1] == least_scales(7.0)
+
+
+def least_scales(acceleration):
+    """Return those of place and velocity, squared, of 1e-9 within 50 s."""
+    speed = 2.0 ** -50 * acceleration * 50.0 / 1e-9
+    return near([(50.0 * speed)**2, speed**2], rel=1e-14)
+
+
+@pytest.mark.parametrize(('groups', 'expected'), [
+    (turning.GROUPS, ()), (turning.APART, ()), (flying.GROUPS, (1, 2)), (hinged.GROUPS, ())])
+def test_place_and_velocity_have_scales_where_a_body_flies(groups, expected):
+    assert unroll.flight(groups) == expected
+
+
+def test_what_cancels_pulls_each_group_by_a_share_of_its_scale():
+    """Omega by a h, the velocity by b h and the place by b h^2; what has no scale yet by 0."""
+    pulled = made(collocation._pulled(flying.GROUPS), math=math)
+    assert pulled(3.0, 5.0, 0.5, (4.0, 25.0, 100.0)) == near(0.75 + 0.25 + 0.25, rel=1e-15)
+    assert pulled(3.0, 5.0, 0.5, (4.0, 0.0, 1e-201)) == 0.75
+    pulled = made(collocation._pulled(turning.APART), math=math)
+    assert pulled(3.0, 5.0, 0.5, (4.0, 25.0, 100.0)) == 0.75
 
 
 def test_each_relaxation_stands_behind_those_before_it(monkeypatch):

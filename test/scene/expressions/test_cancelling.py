@@ -7,7 +7,9 @@ import pytest
 from near import near
 
 from rigid_body_sim.scene.expressions import reader
-from rigid_body_sim.scene.expressions.cancelling import cancelling
+from rigid_body_sim.scene.expressions.cancelling import balancing, cancelling
+from rigid_body_sim.scene.expressions.source import STATE_NAMES
+from rigid_body_sim.scene.scene import parse_scene
 
 
 def of(*texts, horizon=100.0, **parameters):
@@ -45,6 +47,44 @@ def test_the_time_goes_up_to_the_horizon():
     assert of('t - 3', horizon=4.0) == near(3.0 + 4.0 / 256, rel=1e-12)
     assert of('sin(t) + 0.5', horizon=3.0) == 0.0
     assert 0.5 < of('sin(t) + 0.5', horizon=4.0) < 0.6
+
+
+HELD = parse_scene("""
+scene: held
+body: {mass: 2.0, inertia: [1.0, 1.0, 1.0], center_of_mass: [0.0, 0.0, 0.5]}
+constraint: {hinge: {axis: [1, 0, 0]}}
+effects: []
+initial: {angle: 0.75, rate: 3.0}
+""")
+HUNG = parse_scene("""
+scene: hung
+body: {mass: 2.0, inertia: [1.0, 1.0, 1.0]}
+constraint: {pivot: {at: [0, 0, 0.5]}}
+effects: []
+initial: {orientation: [1, 0, 0, 1]}
+""")
+FREE = parse_scene("""
+scene: free
+body: {mass: 2.0, inertia: [1.0, 1.0, 1.0], center_of_mass: [0.0, 0.0, 0.5]}
+constraint: free
+effects: []
+initial: {orientation: [1, 0, 0, 0], position: [0.1, 0.2, 0.3], velocity: [7, 8, 9]}
+""")
+
+
+@pytest.mark.parametrize(('scene', 'text', 'expected'), [
+    (HELD, '-5*angle', 3.75), (HELD, '-5*(angle - 1)', 1.25 + 5.0 * 1.75),
+    (HELD, '-5*angle - 2*rate', 3.75), (HELD, '7', 0.0), (HELD, '-2*rate', 0.0),
+    (FREE, '10*z', 3.0), (FREE, '10*(z - 0.5)', 10.0 * (0.3 + 0.5) + 2.0), (FREE, '3*x + y', 0.5),
+    # a quarter turn about x: the body's origin is 0.5 m before the pivot along y
+    (HUNG, '2*y', 1.0),
+    (FREE, 'vz + 2*qx', 2.0)])
+def test_laws_of_the_place_count_where_a_body_starts(scene, text, expected):
+    """Others balance what they give there, if the body rests."""
+    tree = reader.read(text, STATE_NAMES, 'x')
+    zero = reader.read('0', STATE_NAMES, 'x')
+    found = balancing((tree, zero, zero), (), scene.frame, scene.initial, 100.0)
+    assert found == near(expected, rel=1e-15)
 
 
 def test_three_components_are_a_vector():
