@@ -14,7 +14,7 @@ import numpy as np
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.marching import track
 from rigid_body_sim.integrators.marching.course import Course
-from rigid_body_sim.integrators.marching.points import STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import SCALES, STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.switched import Switched
 
 KEPT = 64    # tracks that are kept for scenes that differ in numbers only
@@ -80,6 +80,11 @@ class Bound:
         kept = piece[self._places[-1] + track.STORE:][:len(point)]
         for one in (point, following, kept):
             one[STEP:VALUES] = head
+
+    def first_head(self, step):
+        """Return a planned step (s) and the scales of a march that none went before."""
+        _, point, _ = self.parts_of(self.prototype(-math.inf))
+        return np.array([step, *point[SCALES:VALUES]])
 
     def parts_of(self, piece):
         """Return control, point and following point of a piece, views of it."""

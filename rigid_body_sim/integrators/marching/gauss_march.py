@@ -5,8 +5,8 @@ A point holds, after its Head (points.py), the unknowns and what their sums lost
 of the step that led here (0: none), in SWEEPS the sweeps it was given, and from KEPT on its rates
 at the stages.
 
-`control` holds, after its Control, in TURNING and MOVING the accelerations of terms that may cancel
-(rad/s^2, m/s^2, bounds.py), and from WORK on a workspace S:
+`control` holds, after its Control, in TURNING and MOVING the accelerations of terms that may
+cancel (rad/s^2, m/s^2, bounds.py), and from WORK on a workspace S:
 
     0           stages, unknown by unknown, eight each
     RATES       their rates

@@ -333,8 +333,7 @@ class Switched:
     def _head(self, stretch, course, time):
         head = stretch.head if stretch.rests else course.head(time)
         if head is None:
-            _, point, _ = self._bound.parts_of(self._bound.prototype(time))
-            head = np.array([FIRST, *point[SCALES:VALUES]])
+            head = self._bound.first_head(FIRST)
         # of a body that was at rest: what time adds up to has the rounding of the clock, and
         # an omega of that size turns the body by less than its accuracy
         scale = SCALES - STEP    # of omega

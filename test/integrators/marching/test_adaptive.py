@@ -32,7 +32,7 @@ def trial(p, w, y, c, k0, h, scales):
 tried = []
 """
 MARCH = specialise(
-    adaptive, trial=TRIAL, SIZE='SIZE = 1\n', ORDER='ORDER = 8\n',
+    adaptive, trial=TRIAL, SIZE='SIZE = 1\n', ORDER='ORDER = 8\n', FLIGHT='FLIGHT = ()\n',
     load=unroll.load_source('load', 1), put=unroll.put_source('put', 1),
     load_scales=unroll.load_source('load_scales', 2),
     put_scales=unroll.put_source('put_scales', 2), rate='def rate(p, y):\n    return (1.0,)\n',

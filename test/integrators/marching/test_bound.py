@@ -9,7 +9,7 @@ import pytest
 
 from rigid_body_sim.integrators.marching import bound, track
 from rigid_body_sim.integrators.marching.bound import Bound
-from rigid_body_sim.integrators.marching.points import TIME, VALUES
+from rigid_body_sim.integrators.marching.points import SCALES, TIME, VALUES
 
 PLACES = 3, 5, 5 + VALUES + 2, 5 + 2 * (VALUES + 2)    # of 3 parameters, 2 controls, 2 values
 LENGTH = VALUES + 2
@@ -57,6 +57,11 @@ def test_the_head_of_another_march_is_that_of_the_first_point_wherever_it_stands
     places = [begin + k for begin in first for k in range(1, VALUES)]
     assert piece.nonzero()[0].tolist() == places
     assert piece[places].tolist() == [*head] * 3
+
+
+def test_a_march_that_none_went_before_has_the_least_scales(monkeypatch):
+    of, *_ = made(monkeypatch)
+    assert of.first_head(0.5).tolist() == [0.5, *range(SCALES, VALUES)]
 
 
 def test_the_parameters_of_a_piece_are_those_that_hold_until_the_next_breakpoint(monkeypatch):

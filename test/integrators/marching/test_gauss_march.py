@@ -17,7 +17,6 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.families import collocation
 from rigid_body_sim.integrators.marching import gauss_march, gauss_nodes
 from rigid_body_sim.integrators.marching.gauss_march import (
-    CANCELLING,
     COMFORTABLE,
     FIXED,
     GROWTH,
@@ -31,6 +30,7 @@ from rigid_body_sim.integrators.marching.gauss_march import (
     STEP,
     TIME,
     TOLERANCE,
+    TURNING,
     UNMOVED,
     VALUES,
     WORK,
@@ -222,7 +222,7 @@ def test_only_the_first_sweep_of_a_step_has_predicted_stages(sweeps, told):
 
 def test_potentials_pull_beside_the_first_relative_group():
     control, *_ = room()
-    control[CANCELLING] = 36.0
+    control[TURNING] = 36.0
     assert MARCH._pull(control, 0.5, (16.0, 25.0)) == 36.0 * 0.5 / 4.0
     assert MARCH._pull(control, 0.5, (0.0,)) == 0.0
 
@@ -334,7 +334,7 @@ def test_states_are_those_of_the_oscillators_at_points_and_between(how):
             y = MARCH.between(P, control, point, following, dt)
             assert y / size == pytest.approx(true(point[TIME] + dt) / size, abs=1e-13)
     assert MARCH.march(P, control, point, following, 8.0, 4.1, 100)[1]
-    assert control[CANCELLING] == 0.0    # what is given stays
+    assert control[TURNING] == 0.0    # what is given stays
     assert point[TIME] == 4.1
     assert point[VALUES:VALUES + 4] / size == pytest.approx(true(4.1) / size, abs=1e-13)
 
@@ -371,7 +371,7 @@ def one_step(monkeypatch, solved, judged, factor, end=9.0, limits=(0.0, 1e-9), h
     From 2 s on, after a step of 0.75 s; 0.5 s are planned, and 6 sweeps.
     """
     control, point, _ = room(tolerance=limits[1])
-    control[CANCELLING], tried = limits[0], []
+    control[TURNING], tried = limits[0], []
     point[TIME], point[STEP], point[MARCH.LAST], point[MARCH.SWEEPS] = 2.0, 0.5, 0.75, 6.0
 
     def solve(p, S, y, h, last, sweeps, allowed, pull, scales):

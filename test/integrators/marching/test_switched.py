@@ -110,7 +110,8 @@ class Made(Switched):
         self._slowest, self._step, self._winds = 1.0 / horizon, None, False
         self._made, self._sides_of, self._pull_of = course, sides, pull
         self._bound = types.SimpleNamespace(equations=types.SimpleNamespace(**{
-            'breakpoints': (), 'grip': 0.0, 'gripping': (), 'in_field': False} | equations))
+            'breakpoints': (), 'grip': 0.0, 'gripping': (), 'in_field': False} | equations),
+            first_head=lambda step: np.array([step, 0.0, *[0.25] * (VALUES - SCALES - 1)]))
         self._stretches, self._begins, self._stalls, self._steps = [], [], 0, 0
         self._courses = {}
         start = np.zeros(STATE_SIZE)
@@ -192,7 +193,7 @@ def test_a_body_at_rest_breaks_loose_where_the_torque_outgrows_friction(sign):
     rest, moves = of._stretches
     assert (rest.rests, rest.modes, rest.head) == (True, (0.0, 1.0), None)
     assert (moves.rests, moves.modes) == (False, (sign, 1.0))
-    assert moves.head.tolist() == [2.0 ** -7, 0.1 * 0.1, *[0.0] * (VALUES - SCALES - 1)]
+    assert moves.head.tolist() == [2.0 ** -7, 0.1 * 0.1, *[0.25] * (VALUES - SCALES - 1)]
 
 
 @pytest.mark.parametrize(('drives', 'mode'), [
