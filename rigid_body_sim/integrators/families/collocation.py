@@ -94,7 +94,8 @@ def _of_unknowns(size, groups, parameter_count):
         'end_of_curve': _end_of_curve(size, places['CURVE']),
         'measure': _measure(groups), 'by_group': _by_group(groups), 'grown': _grown(groups),
         'fastest': unroll.fastest_source(groups), 'first_scales': _first_scales(groups),
-        'pulled': _pulled(groups), 'FLIGHT': f'FLIGHT = {unroll.flight(groups)!r}\n'}
+        'pulled': _pulled(groups), 'balanced': unroll.balanced_source(groups),
+        'FLIGHT': f'FLIGHT = {unroll.flight(groups)!r}\n'}
 
 
 def _places(size):

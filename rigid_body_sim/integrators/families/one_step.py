@@ -38,7 +38,8 @@ def march(method, equations, adapts):
     relative = sum(not absolute for _, _, absolute in groups)
     return specialise(
         adaptive, FLIGHT=f'FLIGHT = {unroll.flight(groups)!r}\n',
-        fastest=unroll.fastest_source(groups), ORDER=f'ORDER = {method.ORDER}\n',
+        balanced=unroll.balanced_source(groups), fastest=unroll.fastest_source(groups),
+        ORDER=f'ORDER = {method.ORDER}\n',
         trial=unroll.trial_source(method, size, 0, groups),
         load_scales=unroll.load_source('load_scales', relative),
         put_scales=unroll.put_source('put_scales', relative), **bindings)
@@ -52,7 +53,7 @@ def begin(stepped, march):
         rounding = ROUNDING * (turning + borne(stepped.scene))
         control = Control(stepped.accuracy / stepped.horizon, 0.0, 0.0)
         set_least_scales(stepped, moving, march.FLIGHT, point)
-        return np.array([*control, rounding, *unroll.weights(stepped.method)]), point
+        return np.array([*control, rounding, moving, *unroll.weights(stepped.method)]), point
     return np.array(Control(0.0, stepped.step, 0.0)), point
 
 

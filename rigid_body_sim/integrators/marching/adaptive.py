@@ -3,7 +3,8 @@
 
 A point of the march holds, after its Head (points.py), the unknowns and what their sums lost;
 `control` holds, after its Control, the rounding of the rates of the first relative group per
-second and from WEIGHTS on the weights of the method (unroll.py). A step is accepted when its
+second, the acceleration of terms that may cancel (m/s^2, bounds.py), and from WEIGHTS on the
+weights of the method (unroll.py). A step is accepted when its
 estimated error per second is below the tolerance, so that errors add up in proportion to time and
 not to the number of steps.
 """
@@ -32,12 +33,14 @@ load = UNBOUND
 put = UNBOUND
 load_scales = UNBOUND
 put_scales = UNBOUND
+balanced = UNBOUND
 FLIGHT = UNBOUND    # which of the scales are those of place and velocity; (): none
 SIZE = UNBOUND
 ORDER = UNBOUND
 
 ROUNDING = CONTROL.size    # places in `control`
-WEIGHTS = ROUNDING + 1
+MOVING = ROUNDING + 1
+WEIGHTS = MOVING + 1
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
 TRIALS = 60                # refusals of one step after which it is given up
@@ -45,9 +48,12 @@ TRIALS = 60                # refusals of one step after which it is given up
 
 @compiled
 def begin(p, control, point):
-    """Choose the first step from a point whose time and unknowns are set."""
+    """Choose the first step from a point whose time and unknowns are set, and the scales."""
     y = load(point, int(VALUES))
-    speed = fastest(y, rate(p, y))
+    k = rate(p, y)
+    control[MOVING], scales = balanced(control[MOVING], load_scales(point, SCALES), k)
+    put_scales(scales, point, SCALES)
+    speed = fastest(y, k)
     point[STEP] = power(control[TOLERANCE], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
 
 

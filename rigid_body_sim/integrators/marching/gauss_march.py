@@ -69,6 +69,7 @@ grown = UNBOUND
 fastest = UNBOUND
 first_scales = UNBOUND
 pulled = UNBOUND
+balanced = UNBOUND
 FLIGHT = UNBOUND  # which of the scales are those of place and velocity; (): none
 along = UNBOUND
 end_of_curve = UNBOUND
@@ -164,7 +165,8 @@ def begin(p, control, point):
     speed = fastest(y, k)
     h = FIRST / speed if speed > 0.0 else UNMOVED
     point[STEP], point[SWEEPS] = 0.0 if control[FIXED] > 0.0 else h, 1.0
-    put_scales(first_scales(load_scales(point, SCALES), y, k, h), point, SCALES)
+    control[MOVING], scales = balanced(control[MOVING], load_scales(point, SCALES), k)
+    put_scales(first_scales(scales, y, k, h), point, SCALES)
 
 
 @compiled

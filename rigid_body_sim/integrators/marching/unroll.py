@@ -11,12 +11,13 @@ values are formed.
 import functools
 import itertools
 
-from rigid_body_sim.integrators.equations.euler import DRIFT, PLACE
+from rigid_body_sim.integrators.equations.euler import CLOCK, DRIFT, PLACE
 
 ROUNDING = 2.0 ** -49    # share of an increment: rounding of the sums of error estimates
 # rad/s: below this angular speed relative rates are meaningless, since the body is still starting
 # from rest
 NOTHING = 1e-100
+LET_GO = 2.0 ** -10     # share of the terms of a force: what is accelerated more is not balanced
 
 
 @functools.cache
@@ -160,6 +161,24 @@ def flight(groups):
     """Return where among the relative groups those of place and velocity are; none: ()."""
     firsts = [first for first, _, absolute in groups if not absolute]
     return (firsts.index(PLACE), firsts.index(DRIFT)) if PLACE in firsts else ()
+
+
+def balanced_source(groups):
+    """Return the source of ``balanced(moving, scales, k)``: both, or 0 for those of the flight.
+
+    Terms of a size `moving` (m/s^2) balance where they hardly accelerate the body. Where they do,
+    it soon has a velocity that is a scale.
+    """
+    lines = ['@compiled', 'def balanced(moving, scales, k):']
+    if not flight(groups):
+        return '\n'.join([*lines, '    return 0.0, scales', ''])
+    square = ' + '.join(f'k[{u}] * k[{u}]' for u in range(DRIFT, CLOCK))
+    kept = [place for place, (first, _, _) in enumerate(
+        group for group in groups if not group[2]) if first < PLACE]
+    return '\n'.join([
+        *lines, f'    if {square} > {LET_GO * LET_GO!r} * moving * moving:',
+        f'        return 0.0, ({"".join(f"scales[{place}], " for place in kept)}0.0, 0.0)',
+        '    return moving, scales', ''])
 
 
 def _rows(method):

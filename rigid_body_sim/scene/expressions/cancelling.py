@@ -46,7 +46,7 @@ def balancing(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float],
     """Return the size of the terms of a law, which others may balance where a body starts.
 
     Of a law of place, attitude or the angle of a hinge its values count, and what may cancel in
-    them, where the body is at first, as if it rested there; or what may cancel wherever it is.
+    them, where the body rests at first; or what may cancel wherever it is.
 
     Parameters
     ----------
@@ -56,14 +56,14 @@ def balancing(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float],
     start : State
     """
     anywhere = cancelling(trees, parameters, horizon)
-    if tree.names(*trees).isdisjoint(POSE):
+    if tree.names(*trees).isdisjoint(POSE) or any(start.angular_velocity) or any(start.velocity):
         return anywhere
-    inner, values = _sizes_in(trees, (*parameters, *_at_rest(frame, start)), horizon)
+    inner, values = _sizes_in(trees, (*parameters, *_numbers(frame, start)), horizon)
     return max(anywhere, inner + values)
 
 
-def _at_rest(frame, start):
-    """Return the names of the state with their numbers where a body starts, but at rest."""
+def _numbers(frame, start):
+    """Return the names of the state with their numbers where a body rests at first."""
     orientation = tuple(map(float, start.orientation))
     origin = map(float, start.position)
     found = dict.fromkeys(STATE_NAMES, 0.0) | dict(

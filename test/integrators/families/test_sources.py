@@ -185,7 +185,8 @@ def test_a_march_of_steps_with_an_error_knows_what_rounding_leaves_of_the_accele
     assert CONTROL.load(control[:CONTROL.size].tolist()) == near(
         Control(2e-11, 0.0, 0.0), rel=1e-15)
     assert control[CONTROL.size] == 14.0 * 2.0 ** -51
-    assert control[CONTROL.size + 1:].tolist() == list(unroll.weights(METHODS['dop8']))
+    assert control[CONTROL.size + 1] == 7.0
+    assert control[CONTROL.size + 2:].tolist() == list(unroll.weights(METHODS['dop8']))
     assert (len(point), any(point)) == (VALUES + 14, False)
     march.FLIGHT = 2, 1
     _, point = one_step.begin(stepped, march)
@@ -202,6 +203,16 @@ def least_scales(acceleration):
     (turning.GROUPS, ()), (turning.APART, ()), (flying.GROUPS, (1, 2)), (hinged.GROUPS, ())])
 def test_place_and_velocity_have_scales_where_a_body_flies(groups, expected):
     assert unroll.flight(groups) == expected
+
+
+def test_a_body_that_a_force_lets_go_needs_no_least_scales():
+    """3 m/s^2 of terms of 3000 balance, but for their rounding; of fewer they do not."""
+    balanced, scales = made(unroll.balanced_source(flying.GROUPS)), (1.0, 2.0, 3.0)
+    rates = (*[9.0] * 10, 2.0, 1.0, 2.0)
+    assert balanced(3.08e3, scales, rates) == (3.08e3, scales)
+    assert balanced(3.06e3, scales, rates) == (0.0, (1.0, 0.0, 0.0))
+    assert balanced(0.0, (1.0, 0.0, 0.0), (0.0,) * 13) == (0.0, (1.0, 0.0, 0.0))
+    assert made(unroll.balanced_source(turning.APART))(7.0, scales, (9.0,) * 7) == (0.0, scales)
 
 
 def test_what_cancels_pulls_each_group_by_a_share_of_its_scale():

@@ -37,7 +37,8 @@ MARCH = specialise(
     load_scales=unroll.load_source('load_scales', 2),
     put_scales=unroll.put_source('put_scales', 2), rate='def rate(p, y):\n    return (1.0,)\n',
     settled='def settled(y, c):\n    return y, (c[0] + 1.0,)\n',    # counts the steps
-    fastest='def fastest(y, k):\n    return y[0]\n')
+    fastest='def fastest(y, k):\n    return y[0]\n',
+    balanced='def balanced(moving, scales, k):\n    return 0.0, (moving, *scales[1:])\n')
 
 
 def start(planned, tolerance=1e-7, C=1.0, error=0.0, most=math.inf, square=0.0, rounding=0.0):
@@ -53,8 +54,10 @@ def start(planned, tolerance=1e-7, C=1.0, error=0.0, most=math.inf, square=0.0, 
 def test_the_first_step_is_short_beside_the_fastest_rate(speed, planned):
     """The eighth root of 1e-8, over a rate; of a body that rests over 10/s."""
     p, control, point, _ = start(0.0, tolerance=1e-8)
-    point[VALUES] = speed
+    point[VALUES], point[SCALES:SCALES + 2], control[MARCH.MOVING] = speed, (2.0, 3.0), 7.0
     MARCH.begin(p, control, point)
+    # what acts on a body that is let go is no scale
+    assert (control[MARCH.MOVING], *point[SCALES:SCALES + 2]) == (0.0, 7.0, 3.0)
     assert point[STEP] == near(planned, rel=1e-14)    # 2e-16
 
 
