@@ -49,7 +49,8 @@ def test_after_an_impulse_off_its_axis_the_method_is_the_one_that_goes_on():
 
 def hanging(inertia, **settings):
     """Return a Simulation of a top that hangs at rest, which shows no difference of its moments."""
-    return Simulation(parse_scene(HANGING.format(inertia)), horizon=10.0, rate=10.0, **settings)
+    scene = parse_scene(HANGING.format(inertia))
+    return Simulation(scene, horizon=10.0, rate=10.0, **settings)
 
 
 def test_a_body_at_rest_that_is_nearly_symmetric_is_stepped_once_an_impulse_moves_it():
