@@ -48,7 +48,7 @@ def test_after_an_impulse_off_its_axis_the_method_is_the_one_that_goes_on():
 
 
 def hanging(inertia, **settings):
-    """Return a Simulation of a top that hangs at rest, which shows no difference of its moments."""
+    """Return a Simulation of a top that hangs at rest: no difference of moments shows."""
     scene = parse_scene(HANGING.format(inertia))
     return Simulation(scene, horizon=10.0, rate=10.0, **settings)
 
