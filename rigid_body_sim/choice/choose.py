@@ -25,7 +25,7 @@ from rigid_body_sim.integrators.protocols import FINEST, Solver
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drive
 from rigid_body_sim.motions import absorbing_motion
-from rigid_body_sim.motions.nearly import is_exact, nearly_absorbing
+from rigid_body_sim.motions.nearly import is_exact, nearly_absorbing, only_rounding
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.vectors import apply
@@ -33,6 +33,7 @@ from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.painleve import may_meet_paradox
 from rigid_body_sim.scene.scene import Scene
+from rigid_body_sim.scene.state import TIME, State
 
 STIFF = 10.0    # multiple of the body's rate above which internal dissipation is stiff
 ENDING = 1e-9   # largest accuracy for stiff dissipation; a coarser one keeps a residual wobble
@@ -89,6 +90,7 @@ class Choice:
     tolerance: float | None
     _prototype: Solver = field(repr=False)
     settled: settling.Settled | None = field(repr=False)
+    _left_out: float = field(default=0.0, repr=False)    # error of a scene nearly this one, rad
 
     @functools.cached_property
     def _forecast(self):
@@ -130,9 +132,9 @@ class Choice:
 
         The general method solves a held wrench where the choice is a motion, or a method whose
         family does not account for one. It also goes on where a command has brought the body to a
-        state from which the motion does not hold.
+        state from which the motion does not hold, or errs by more than the accuracy.
         """
-        if not wrench and (not self._asks or self._prototype.takes(start)):
+        if not wrench and self._holds(start) and (not self.is_nearly or self._meets(start)):
             return self._prototype.start(start)
         return self._general(wrench).start(start)
 
@@ -224,6 +226,25 @@ class Choice:
     def _holds(self, start):
         """Return whether the prototype goes on from a state."""
         return not self._asks or self._prototype.takes(start)
+
+    @functools.cached_property
+    def _leaves_out_rounding(self):
+        return only_rounding(self.scene, self._prototype.solved)
+
+    def _meets(self, start):
+        """Return whether the closed form of a scene nearly this one is good enough from a state.
+
+        Its error grows with the rates of the body, and a body at rest shows none.
+        """
+        if self._leaves_out_rounding:
+            return True
+        begun = self.scene.initial.vector.copy()
+        begun[TIME] = start[TIME]
+        if start.tobytes() == begun.tobytes():
+            return True
+        begun[:], begun[TIME] = start, 0.0
+        found = _closed_form(replace(self.scene, initial=State(begun)), self.horizon)
+        return found is not None and found.error <= max(self.accuracy, found.floor, self._left_out)
 
     def _general(self, wrench):
         """Return the solver that stands in where the prototype cannot go on."""
@@ -379,7 +400,7 @@ def _by_motion(scene, named, accuracy, horizon, settled):
         return of_exact(scene, prototype, found.error, accuracy, horizon,
                         functools.partial(_general, scene, horizon=horizon))
     return Choice(scene, 'exact', accuracy, None, horizon, accuracy, prototype,
-                  settled or settling.Settled('exact', accuracy, find=find))
+                  settled or settling.Settled('exact', accuracy, find=find), found.error)
 
 
 class _Closed(NamedTuple):

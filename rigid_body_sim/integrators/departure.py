@@ -214,6 +214,10 @@ class Departing:
             return self._near.begin
         return time if time < self._near.end else self._later().entries_until(time)
 
+    def step_at(self, time):
+        """Return the length (s) of the step that holds a time (s)."""
+        return math.inf if time < self._near.end else self._later().step_at(time)
+
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""
         if time < self._near.end:
@@ -275,6 +279,12 @@ class Arriving:
     def kinks(self, until):
         """Return the times of kinks: none."""
         return []
+
+    def step_at(self, time):
+        """Return the length (s) of the step that holds a time (s)."""
+        self._reach(time)
+        rests = self._rest is not None and time >= self._look
+        return math.inf if rests else self._march.step_at(time)
 
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""

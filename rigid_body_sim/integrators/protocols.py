@@ -251,6 +251,12 @@ class Course(Protocol):
     def states(self, times: np.ndarray, out: np.ndarray) -> None:
         """Fill the rows of `out` as `state` does, for times (s) in any order."""
 
+    def step_at(self, time: float) -> float:
+        """Return the length (s) of the step that holds a time (s); infinite where none does.
+
+        Only courses that do not tell events are asked.
+        """
+
     def kinks(self, until: float) -> list[float]:
         """Return the times before another at which marches stopped at a kink, s.
 

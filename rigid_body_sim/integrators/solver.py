@@ -292,7 +292,7 @@ class Stepped:
         if self._watcher is None:
             self._watcher = Watcher(self, watches(self.scene), float(self.vector[TIME]),
                                     swing_rate(self.scene), drive(self.scene, self.wrench),
-                                    unbounded(self.scene))
+                                    self._course.step_at if unbounded(self.scene) else None)
         return [event for event in self._watcher.events(until, tick) if event[0] > after]
 
     def allowance(self, until):

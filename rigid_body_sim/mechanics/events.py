@@ -22,6 +22,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE
 RADIANS_BETWEEN_LOOKS = 0.2
 RADIANS_BLIND = 3.0
 BLINK = 0.0625    # s
+SHARE_OF_STEP = 0.25    # of the method, between two looks
 MOST_LOOKS = 2 ** 22
 FLIP, TURNING_POINT = 'flip', 'turning point'
 WATCHED = FLIP, TURNING_POINT
@@ -128,13 +129,15 @@ class Watcher:
         move.
     drive : float
         Rate that drives may add in a second, rad/s^2 (mechanics/bounds.py).
-    unbounded : bool, optional
-        Whether these bounds may be exceeded: then looks are at most BLINK apart.
+    step_at : callable, optional
+        Where these bounds may be exceeded: the length (s) of the step of the method that holds a
+        time. Looks are then at most BLINK and a share of a step apart: what nothing bounds may
+        turn a body back and forth at any rate, and the steps follow it.
     """
 
-    def __init__(self, solver, watched, start, swing, drive, unbounded=False):
-        self._swing, self._drive = swing, drive
-        self._longest = BLINK if unbounded else math.inf
+    def __init__(self, solver, watched, start, swing, drive, step_at=None):
+        self._swing, self._drive, self._step_at = swing, drive, step_at
+        self._longest = math.inf if step_at is None else BLINK
         self._solver, self._watched = solver, watched
         self._vector = np.empty(STATE_SIZE)
         self._time = start
@@ -168,7 +171,10 @@ class Watcher:
         while self._watched and self._time < until:
             # between two looks the body turns so far that changes of sign are missed
             blind = RADIANS_BLIND * self._spacing < least * RADIANS_BETWEEN_LOOKS
-            time = min(until, self._time + max(self._spacing, 32.0 * least if blind else least))
+            spacing = self._spacing
+            if self._step_at is not None and not blind:
+                spacing = min(spacing, SHARE_OF_STEP * self._step_at(self._time))
+            time = min(until, self._time + max(spacing, 32.0 * least if blind else least))
             values = self._look(time)
             if blind:
                 self._time, self._values = time, values

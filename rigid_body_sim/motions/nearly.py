@@ -41,6 +41,7 @@ STRETCHES = 32                          # kicks about each axis, and looks at wh
 LOOKS_A_RADIAN, MOST_LOOKS = 8.0, 2 ** 17
 SHOWN = 1e-7                            # size of the tried kicks over the rates of the body
 TWICE = 2.0
+FEW_ULPS = 2.0 ** -51    # relative: what rounds the moments of a body
 
 
 class Nearly(NamedTuple):
@@ -82,6 +83,18 @@ def is_exact(motion, scene):
     """
     moments = scene.constraint.inertia(scene.body).moments
     return not differ(scene, moments) or takes_any_moments(motion, scene)
+
+
+def only_rounding(scene, solved):
+    """Return whether a scene differs from the one solved for it by rounding of its moments alone.
+
+    From no start does that do more than half an ulp on the moments does, which are given rounded.
+    """
+    inertia, body = scene.constraint.inertia(scene.body), scene.body
+    equal = solved.constraint.inertia(solved.body).moments
+    least = min((moment for moment in equal if moment > 0.0), default=0.0)
+    return (body.center_of_mass == solved.body.center_of_mass
+            and all(abs(e) <= FEW_ULPS * least for e in _left_out(inertia, equal)))
 
 
 def nearly_absorbing(scene, horizon):

@@ -82,6 +82,11 @@ class Exact:
         self._last_events = NONE_YET
 
     @property
+    def solved(self):
+        """The Scene that the motion absorbs."""
+        return self._solved
+
+    @property
     def is_nearly(self):
         """Whether the scene that the motion absorbs differs from the one that is published."""
         return self._solved is not self._scene

@@ -18,7 +18,7 @@ import numpy as np
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
-from rigid_body_sim.scene.state import TIME
+from rigid_body_sim.scene.state import STATE_SIZE, TIME
 
 ASKS = {'accuracy': ('SOLVER',)}
 TABLE = False
@@ -87,6 +87,12 @@ class _Course:
     def kinks(self, until):
         """Return the times of kinks: none."""
         return []
+
+    def step_at(self, time):
+        """Return the length (s) of the step that holds a time (s)."""
+        self.state(time, np.empty(STATE_SIZE))
+        k = bisect.bisect_left(self._reached, time)
+        return self._reached[k] - (self._reached[k - 1] if k else self._begin)
 
     def _enter(self, begin, y):
         """Start the solver of the stretch that begins at a time."""

@@ -5,14 +5,16 @@ A piece is one array (track.py): the stretch between two breakpoints of what act
 bound.py, has its kernels and places; the contract `Course` is in integrators/protocols.py.
 """
 
+import bisect
 import math
 
 import numpy as np
 
 from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.integrators.marching.points import LOST, REACHED, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import FIXED, LOST, REACHED, TIME, VALUES
 from rigid_body_sim.integrators.marching.work import Doublings, Work
+from rigid_body_sim.scene.state import STATE_SIZE
 
 FOR_EVER = (math.inf,)
 AT_ONCE = 4096    # states of one call of a kernel
@@ -43,6 +45,14 @@ class Course:
     def kinks(self, until):
         """Return the times of kinks: none."""
         return []
+
+    def step_at(self, time):
+        """Return the length (s) of the step that holds a time (s)."""
+        self.state(time, np.empty(STATE_SIZE))
+        piece = self._pieces[bisect.bisect_right(self._ends, time)]
+        control, point, following = self._bound.parts_of(piece)
+        step = float(following[TIME] - point[TIME])
+        return step if step > 0.0 else float(control[FIXED])    # marching/fixed.py
 
     def _first_piece(self):
         """Append the piece at the start, not filled yet; return what track.first_piece takes."""

@@ -111,7 +111,7 @@ FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, w
 FIRST_SWEEPS = 4         # sweeps of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
-CANCELLED = 2.0 ** -51   # share of cancelling terms that a step need not resolve
+CANCELLED = 2.0 ** -57    # share of cancelling terms that a step need not resolve: errors add up
 # The rates of y' = i nu y with x = nu h have Legendre coefficients
 #     c_n = x^(n + 1) (2 n + 1)/(2^n (2 n + 1)!!)    for large n:
 # c_(n + 1)/c_n is x/(4 n + 2), the 7th is 5.8e-8 x^8, and the step errs by

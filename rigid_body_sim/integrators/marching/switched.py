@@ -116,6 +116,10 @@ class Resting:
     def __init__(self, vector):
         self._vector = vector
 
+    def step_at(self, time):
+        """Return infinity: it takes no steps."""
+        return math.inf
+
     def state(self, time, out):
         """Fill `out` with the state at a time (s)."""
         out[:] = self._vector
@@ -165,6 +169,11 @@ class Switched:
             part = np.empty((len(rows), STATE_SIZE))
             self._course(int(place)).states(times[rows], part)
             out[rows] = part
+
+    def step_at(self, time):
+        """Return the length (s) of the step that holds a time (s)."""
+        self._reach(time)
+        return self._course(self._place(time)).step_at(time)
 
     def kinks(self, until):
         """Return the times of the kinks after the start and before a time, s."""

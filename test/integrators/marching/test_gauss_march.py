@@ -417,10 +417,10 @@ def test_a_step_that_errs_or_turns_too_much_or_does_not_converge_is_tried_shorte
 
 
 def test_terms_that_nearly_cancel_allow_a_step_their_rounding(monkeypatch):
-    """2^-51 of what potentials can do, 1e12 * 0.5 beside 1000."""
+    """2^-57 of what potentials can do, 1e12 * 0.5 beside 1000."""
     _, tried = one_step(
         monkeypatch, [(6, False, True)], [(0.0, 1.0)], 1.5, limits=(1e12, 1e-9))
-    assert tried[0][3] == near(2.0 ** -51 * 5e8, rel=1e-14)
+    assert tried[0][3] == near(2.0 ** -57 * 5e8, rel=1e-14)
 
 
 @pytest.mark.parametrize(('last', 'dt', 'sweeps'), [
