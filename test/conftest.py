@@ -116,6 +116,19 @@ OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """Let other workers wait while one reads a test file for the first time.
+
+    pytest rewrites its asserts, which takes longer than all else, and keeps the result for them.
+    """
+    if not isinstance(collector, pytest.Module):
+        return (yield)
+    with open(collector.path, 'rb') as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        return (yield)
+
+
 def pytest_collection_modifyitems(items):
     """Let a test wait for the process without numba, in which its own time limit holds."""
     for item in items:
