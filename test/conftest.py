@@ -102,7 +102,7 @@ def plain(shared):
 
 WITHOUT_NUMBA = pytest.StashKey()
 """Of a session: the results of the tests that ran without numba, by name."""
-IN_ONE_PROCESS = 8
+IN_ONE_PROCESS = 12
 """Files, in the order of their paths, whose tests run without numba in one process.
 
 Starting one takes a second.
