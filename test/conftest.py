@@ -102,7 +102,7 @@ def plain(shared):
 
 WITHOUT_NUMBA = pytest.StashKey()
 """Of a session: the results of the tests that ran without numba, by name."""
-IN_ONE_PROCESS = 8
+IN_ONE_PROCESS = 12
 """Files, in the order of their paths, whose tests run without numba in one process.
 
 Starting one takes a second.
@@ -114,6 +114,19 @@ One took 274 s beside others on a slow machine, and 287 s of the processor in th
 """
 OUTCOMES = 'RIGID_BODY_SIM_TEST_OUTCOMES'
 """Variable with the path of the file in which a process without numba leaves its results."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """Let other workers wait while one reads a test file for the first time.
+
+    pytest rewrites its asserts, which takes longer than all else, and keeps the result for them.
+    """
+    if not isinstance(collector, pytest.Module):
+        return (yield)
+    with open(collector.path, 'rb') as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        return (yield)
 
 
 def pytest_collection_modifyitems(items):

@@ -133,6 +133,7 @@ def test_ticks_that_nobody_asks_for_are_run_all_the_same():
     assert rerun.simulation.tick == 9
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('keeps', 'scene'), [(True, SCENE), (False, OTHER)])
 def test_parameters_of_a_simulation_make_another_one_that_goes_on(keeps, scene):
     other = {'kind': 'parameters', 'tick': 2, 'changed': {'command_timeout': 1},

@@ -17,6 +17,8 @@ from rigid_body_sim.recording import about
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
+pytestmark = pytest.mark.without_numba
+
 SMOOTH_ROOT = "torque: {value: ['-0.01/sqrt(1 + wx^2)', 0, 0], frame: body}"
 
 
@@ -118,7 +120,6 @@ def test_another_method_is_tried_where_its_least_error_is_as_small(least, taken,
     assert settling.settle(scene, list(told), 1e-11, 6.0).method == taken
 
 
-@pytest.mark.without_numba
 @IN_SOAK    # a minute, of which the kernels take most
 def test_where_one_method_rounds_by_more_than_is_asked_another_one_does_not():
     """The weights of dop8 have both signs; those of collocation are positive, and round less."""
@@ -147,7 +148,6 @@ NAMED = {
     'smooth': ("torque: {value: ['-0.3*wx', 0, 0]}", 'gauss16', 1e-9, False)}
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize(('effects', 'method', 'accuracy', 'missed'), NAMED.values(), ids=NAMED)
 def test_a_method_that_is_named_says_what_it_errs_by(effects, method, accuracy, missed):
     simulation = Simulation(parse_scene(FALLING.replace('EFFECTS', effects)), method,
@@ -164,7 +164,6 @@ def test_a_method_that_is_named_says_what_it_errs_by(effects, method, accuracy, 
     assert Simulation(simulation.scene, 'dop8', step=0.01).expected_error is None
 
 
-@pytest.mark.without_numba
 def test_stiff_dissipation_at_a_coarse_request_is_told_the_error_of_its_run():
     """A coarse run keeps a residual wobble, so it is finer than the trial found sufficient."""
     scene, times = parse_scene(
@@ -181,7 +180,6 @@ def test_stiff_dissipation_at_a_coarse_request_is_told_the_error_of_its_run():
 ROTOR = 'rotor: {axis: [0.3, 0.2, 1], momentum: 1.0e+5}'
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize(('method', 'accuracy', 'missed'), [
     ('lsoda', 1e-5, True), ('radau', 1e-3, True), ('dop8', 1e-6, False)])
 def test_a_damped_nutation_counts_though_the_attitude_does_not_show_it(method, accuracy, missed):
@@ -198,7 +196,6 @@ def test_a_damped_nutation_counts_though_the_attitude_does_not_show_it(method, a
         assert off / 3.0 < simulation.expected_error < 3.0 * off
 
 
-@pytest.mark.without_numba
 @pytest.mark.parametrize('accuracy', [1e-6, FINEST])
 def test_a_nutation_is_compared_with_a_run_as_fine_as_it_takes(accuracy, monkeypatch):
     made = []

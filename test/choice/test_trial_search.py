@@ -442,6 +442,7 @@ def test_a_finer_run_that_differs_by_less_than_its_own_error_is_not_enough(tried
     assert tried._below(HERE / 128.0, HERE) == HERE / 128.0
 
 
+@pytest.mark.without_numba
 def test_errors_that_a_run_allows_itself_count_from_then_on(monkeypatch):
     one = made(accuracy=1e-8)
     finer = one._reference(HERE)

@@ -3,12 +3,14 @@
 
 import concurrent.futures
 import importlib.util
+import json
 import os
 import subprocess
 import sys
 import uuid
 
 import pytest
+import ros
 
 from rigid_body_sim.compilation import jit
 
@@ -30,13 +32,19 @@ def twelfth(x):
     return third(sixth(x)) * 1.5
 """
 CALLS = """
-import sys
-sys.path.insert(0, sys.argv[1])
-import kernels
-for name in sys.argv[2:]:
-    kernel = getattr(kernels, name)
-    print(kernel(10.0), *(sum(one.stats.cache_hits.values()) for one in (
-        kernels.third, kernels.sixth, kernels.twelfth)))
+import importlib.util, json, sys
+told = {}
+for folder, names in json.load(sys.stdin).items():
+    specification = importlib.util.spec_from_file_location(
+        f'kernels of {folder}', f'{folder}/kernels.py')
+    kernels = sys.modules[specification.name] = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(kernels)
+    told[folder] = []
+    for name in names:
+        answer = getattr(kernels, name)(10.0)
+        told[folder].append((answer, [sum(one.stats.cache_hits.values()) for one in (
+            kernels.third, kernels.sixth, kernels.twelfth)]))
+print(json.dumps(told))
 """
 
 
@@ -102,23 +110,35 @@ def test_an_error_while_a_caller_compiles_leaves_nothing_behind(kernels):
     assert kernels.twelfth(36.0) == 3.0
 
 
-@pytest.mark.parametrize(('first', 'then', 'hits'), [
-    # each line: the answer, and how often third, sixth and twelfth were read from the cache
-    (['twelfth'], ['twelfth'], ['0 0 1']),
-    (['sixth'], ['twelfth'], ['1 0 0']),
-    (['twelfth'], ['sixth', 'third'], ['1 0 0', '1 0 0']),
-    (['third', 'twelfth'], ['third', 'sixth'], ['1 0 0', '1 0 0'])])
-def test_another_process_reads_callees_and_callers_from_the_cache(tmp_path, first, then, hits):
-    (tmp_path / 'kernels.py').write_text(KERNELS, encoding='utf-8')
+CASES = {
+    # what one process calls; what the next one calls, and after each call how often third, sixth
+    # and twelfth were read from the cache
+    'the same': (['twelfth'], {'twelfth': [0, 0, 1]}),
+    'its caller': (['sixth'], {'twelfth': [1, 0, 0]}),
+    'its callees': (['twelfth'], {'sixth': [1, 0, 0], 'third': [1, 0, 0]}),
+    'both': (['third', 'twelfth'], {'third': [1, 0, 0], 'sixth': [1, 0, 0]})}
+
+
+@pytest.fixture(scope='module')
+def told(tmp_path_factory):
+    """Return case -> (answer, hits) of each call of a second process, after a first one's."""
+    root = tmp_path_factory.mktemp('processes')
+    for case in CASES:
+        (root / case).mkdir()
+        (root / case / 'kernels.py').write_text(KERNELS, encoding='utf-8')
 
     def run(names):
-        return subprocess.run(
-            [sys.executable, '-c', CALLS, str(tmp_path), *names], capture_output=True, text=True,
-            env=os.environ | {'XDG_CACHE_HOME': str(tmp_path / 'cache')}, check=True,
-            timeout=100).stdout.splitlines()
-    run(first)
-    told = run(then)
-    third = 10.0 / 3.0
+        environment = os.environ | {
+            'XDG_CACHE_HOME': str(root / 'cache'), 'PYTHONPATH': str(ros.ROOT)}
+        return json.loads(subprocess.run(
+            [sys.executable, '-c', CALLS], input=json.dumps(names), capture_output=True, text=True,
+            cwd=root, env=environment, check=True, timeout=200).stdout)
+    run({case: first for case, (first, _) in CASES.items()})
+    return run({case: list(then) for case, (_, then) in CASES.items()})
+
+
+@pytest.mark.parametrize('case', CASES)
+def test_another_process_reads_callees_and_callers_from_the_cache(told, case):
+    third, (_, then) = 10.0 / 3.0, CASES[case]
     answers = {'third': third, 'sixth': third / 2.0, 'twelfth': third / 2.0 / 3.0 * 1.5}
-    assert [float(line.split()[0]) for line in told] == [answers[name] for name in then]
-    assert [line.split(maxsplit=1)[1] for line in told] == hits
+    assert told[case] == [[answers[name], hits] for name, hits in then.items()]

@@ -72,6 +72,7 @@ def test_errors_of_a_peer_that_is_wrong_are_those_of_its_states():
         peer(wrong=askew))] for name, case in ASKED.items() if name[0] != '7'})
 
 
+@pytest.mark.without_numba
 def test_a_peer_that_finds_nothing_says_so():
     asked = {name: case.asked for name, case in ASKED.items() if name[0] == '8'}
     still = peer(wrong=lambda time, state: np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))

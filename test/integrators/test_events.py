@@ -58,6 +58,7 @@ def test_nodding_top_turns_at_the_same_times_in_both():
         [event.time for event in exact.events], abs=1e-10)
 
 
+@pytest.mark.without_numba
 def test_pendulum_let_go_from_rest_turns_in_one_long_jump():
     exact, stepped = (Simulation('kater_pendulum', integrator=integrator, accuracy=1e-13)
                       for integrator in ('exact', 'dop8'))

@@ -100,7 +100,7 @@ CASES = {
     'synchronous needle': (
         '{mass: 1, inertia: [0.3, 0.3, 0.5]}', '{hinge: {axis: [0, 0, 1]}}', 'w: 1.3',
         "magnetic: {moment: [2, 0, 0], field: ['0.5*cos(w*t)', '0.5*sin(w*t)', 0]}",
-        '{rate: 1.3}', 2.0),
+        '{rate: 1.3}', 1.0),
     'uneven field': (SKEW, 'free', '', "magnetic: {moment: [0, 0.1, 1.2], "
                      "field: ['0.1*x', 0.2, '0.4 - 0.1*z']}", TURNING, 0.5),
     'at a hinge': (SKEW, '{hinge: {axis: [1, 2, 0.5]}}', 'k: 0.1',
@@ -156,11 +156,11 @@ CASES = {
     # the pivot moves: seen from it, -M a acts at the centre of mass
     'on a moving pivot': (
         SKEW, "{pivot: {motion: ['0.3*sin(2*t)', 0, 'A*cos(w*t)'], at: [0.1, 0.02, -0.05]}}",
-        'A: 0.05, w: 20.0', 'gravity: {g: 9.81}', TURNING, 1.0),
+        'A: 0.05, w: 20.0', 'gravity: {g: 9.81}', TURNING, 0.5),
     'the same in its own axes': (
         SKEW, '{pivot: {at: [0.1, 0.02, -0.05]}}', 'A: 0.05, w: 20.0',
         "gravity: {g: 9.81}}, {force: {value: ['1.3*1.2*sin(2*t)', 0, '1.3*A*w^2*cos(w*t)'], "
-        'frame: world}', TURNING, 1.0),
+        'frame: world}', TURNING, 0.5),
     'in a lift': (
         SKEW, "{pivot: {motion: [0, 0, '1.5*t^2']}}", '', 'gravity: {g: 9.81}', TURNING, 0.5),
     'under more weight': (SKEW, 'pivot', '', 'gravity: {g: 12.81}', TURNING, 0.5),
@@ -170,7 +170,7 @@ CASES = {
         'quadratic: 0.3, angular: 0.01}}, {spring: {at: [0.1, 0.2, 0.3], anchor: [1, 0, 0], '
         "stiffness: 2, length: 0.3, damping: 0.1}}, {force: {value: ['sin(t)', x, '-vz'], "
         "at: [0.1, 0, 0], books: heat}}, {potential: {energy: '0.1*qx*y + x*z'}}, "
-        '{rotor: {axis: [1, 2, 3], momentum: 0.1}', TURNING, 1.0),
+        '{rotor: {axis: [1, 2, 3], momentum: 0.1}', TURNING, 0.5),
     'heat at a pivot': (SKEW, 'pivot', '', 'gravity: {g: 9.81}}, {internal_dissipation: '
                         '{coefficient: 0.5}', TURNING, 1.0),
     'heat in a field': (SKEW, 'free', '', 'magnetic: {moment: [1, 2, 3], field: [0.3, 0.1, 0.2]}},'
@@ -209,8 +209,9 @@ BY_SERIES = ('top in a world that is turned', 'potential of place and attitude',
 if SOAK:    # sixteen seconds of plain Python
     BY_TWO += ('four at once', 'body axes', 'reaction wheels on a tip', 'everything on a hinge',
                'heat at a pivot')
+    # none with the angle of a hinge in a force: it jumps, and taylor stops at no kink
     BY_SERIES += ('body axes', 'pivoted, body axes', 'gyrostat on a tip', 'uneven field',
-                  'everything on a hinge', 'mixed, free')
+                  'mixed, free')
 
 if __name__ == '__main__':
     print(json.dumps({name: run(name) for name in CASES if SOAK or name not in LIKE_OTHERS}

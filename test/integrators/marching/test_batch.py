@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from data import smooth_cases
 from near import near
+from numba_only import LONG_IN_PYTHON
 from scipy.spatial.transform import Rotation
 from soak import IN_SOAK
 
 from rigid_body_sim import BadInput, NotConverged, ensemble
-from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled
+from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.lanes import LANES, Plain
 from rigid_body_sim.integrators.families import power_series as FAMILY  # noqa: N812
 from rigid_body_sim.integrators.marching import (
@@ -27,9 +28,6 @@ from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.scene import parse_scene
 
-pytestmark = pytest.mark.skipif(
-    not HAVE_NUMBA, reason='thousands of bodies take minutes without numba')
-
 REFERENCE = json.loads((pathlib.Path(__file__).resolve().parent.parent.parent / 'data'
                         / 'smooth.json').read_text())
 ULP = np.finfo(float).eps
@@ -43,6 +41,7 @@ def starts_of(scene, factors):
     return starts
 
 
+@LONG_IN_PYTHON
 @pytest.mark.parametrize('name',
                          ['asymmetric_heavy_top', 'skew_heavy_top', 'driven_body',
                           'driven_from_rest', 'driven_in_pieces'])
@@ -84,6 +83,7 @@ DAMPED = {
               'initial: {angle: 0.5, rate: 2.0}\n')}
 
 
+@LONG_IN_PYTHON
 @pytest.mark.parametrize('name', [
     pytest.param(name, marks=IN_SOAK if name != 'top' else ()) for name in DAMPED])
 def test_bodies_with_drag_and_on_a_hinge_go_side_by_side(name):
@@ -99,6 +99,7 @@ def test_bodies_with_drag_and_on_a_hinge_go_side_by_side(name):
     assert np.abs(together - alone).max() < 1e-12    # measured: 3e-14
 
 
+@LONG_IN_PYTHON
 def test_slow_and_fast_bodies_share_the_lanes():
     """19 tops, one at rest and one at 240 rad/s, each with its own start, against one by one."""
     scene = parse_scene(smooth_cases.text('asymmetric_heavy_top'))
@@ -120,6 +121,7 @@ def test_slow_and_fast_bodies_share_the_lanes():
     assert (other.vector == together[4:, [1, 3, 0]]).all()
 
 
+@pytest.mark.without_numba
 def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
     """Spun about a principal axis the angle is 5 t + 0.005 t^2; a step takes up to 4 rad."""
     spun = parse_scene('scene: spun\nbody: {mass: 1.0, inertia: [1.0, 1.5, 2.0]}\n'
@@ -133,6 +135,7 @@ def test_sign_of_the_quaternion_is_kept_over_steps_longer_than_half_a_turn():
         assert np.abs(body.orientation[:, 2:] - exact).max() < 1e-3
 
 
+@LONG_IN_PYTHON
 def test_force_and_couple_change_the_angular_momentum():
     """L of a top under its weight and an askew couple is the integral of r x F + couple."""
     body, constraint, _, initial, _, _ = smooth_cases.CASES['skew_heavy_top']
@@ -173,6 +176,7 @@ def test_thrown_bodies_fall():
     assert np.abs(drop - expected).max() < 1e-11
 
 
+@pytest.mark.without_numba
 def test_hinged_bodies_keep_their_hinge_and_their_energy():
     scene = parse_scene(smooth_cases.text('held_hinge_body'))
     axis, through = np.array(scene.constraint.axis), np.array(scene.constraint.through)
@@ -211,6 +215,7 @@ def test_who_fails_is_named():
         ensemble(scene, starts[:2], [1.0], 'taylor', 1e-9)
 
 
+@LONG_IN_PYTHON
 @pytest.mark.parametrize(('series', 'order'), [
     ('coarse_', batch_lane.COARSE), ('', batch_lane.ORDER)])
 @pytest.mark.parametrize('form', [
