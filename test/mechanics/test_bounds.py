@@ -167,6 +167,31 @@ def test_terms_that_may_cancel_are_potentials_and_expressions():
     assert cancelling(scene('pivot', pushed), 100.0)[1] == 0.0
 
 
+def test_springs_and_potentials_count_as_they_are_at_the_start():
+    """2 kg; forces act at an arm about the centre of mass, (0.3, 0, 0.4) m, of at least 2 kg m^2.
+
+    5 (z - 2) N of a potential are 10 N at the origin. The spring pulls with 5 sqrt(2) N at z = 1,
+    where 1 - 2 may cancel: 15 N more, and some of its rotation.
+    """
+    well = scene('free', "potential: {energy: '2.5*(z - 2)^2'}")
+    assert cancelling(well, 100.0) == (2.5, 5.0)
+    turning, moving = cancelling(scene('free', SPRING), 100.0)
+    assert 15.0 + 5.0 * math.sqrt(2.0) <= 2.0 * moving < 40.0
+    assert turning == near(math.hypot(0.3, 0.6) * moving, rel=1e-14)
+    torsion = scene(HINGE, 'spring: {stiffness: 5.0, angle: 0.7}')
+    assert cancelling(torsion, 100.0) == (near(3.5 / 3.18, rel=1e-14), 0.0)
+
+
+def test_a_magnet_in_a_field_that_changes_counts_and_another_has_bounds():
+    """2 A m^2 in 1 + tanh(t - 5) T beside it: about 2 N m where tanh passes zero."""
+    moment = 'magnetic: {{moment: [0, 0, 2], field: [{}, 0, 0]}}'.format
+    turning, moving = cancelling(scene('free', moment("'1 + tanh(t - 5)'")), 100.0)
+    assert 0.9 < turning < 1.5
+    assert moving == 0.0
+    steady = scene('pivot', moment('3'))
+    assert cancelling(steady, 100.0) == (swing_rate(steady)**2, 0.0)
+
+
 def test_a_swing_has_the_momentum_of_its_rate_about_the_largest_moment():
     """M g r = 10 J about the origin, where the centre of mass is 0.5 m off."""
     tensor = np.diag([2.0, 3.0, 4.0]) + 2.0 * (0.25 * np.eye(3) - np.outer(*[[0.3, 0, 0.4]] * 2))
