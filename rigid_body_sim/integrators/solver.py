@@ -47,13 +47,13 @@ SLACK = 1e-2            # share of the tolerance: jumps between steps that the l
 class _Ledger:
     """What only the ledger needs: made on its first use, once for all starts."""
 
-    def __init__(self, scene, wrench):
-        self._scene, self._wrench = scene, wrench
+    def __init__(self, scene, wrench, horizon):
+        self._scene, self._wrench, self._horizon = scene, wrench, horizon
 
     @functools.cached_property
     def actors(self):
         """The Actors of the scene."""
-        return Actors(self._scene, self._wrench)
+        return Actors(self._scene, self._wrench, self._horizon)
 
 
 class Stepped:
@@ -99,7 +99,7 @@ class Stepped:
             raise BadInput('integrator', f'{method!r} cannot run a body on the table',
                            f'those that can: {", ".join(able)}')
         self._bound = self.method.FAMILY.bind(self.method, self)
-        self._ledger = _Ledger(scene, wrench)
+        self._ledger = _Ledger(scene, wrench, horizon)
         self._departs = step is None and applies(scene, wrench)
         self._may_wind = scene.wound.constraint != scene.constraint
         self._carried = scene.frame.path is not None

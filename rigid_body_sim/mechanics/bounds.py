@@ -11,6 +11,7 @@ from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.effects.protocol import Cancelling
 from rigid_body_sim.scene.scene import kept
 
 REST = 2.0 ** -60    # rad/s: a body that turns no faster rests; in a year it turns 3e-11 rad
@@ -172,12 +173,18 @@ def cancelling(scene, horizon):
     They are potentials, with swing_rate^2 = 4 U/I, springs, and expressions up to a time (s). What
     is left of them is rounding.
     """
-    frame, swing = scene.frame, swing_rate(scene)
+    swing, (torque, force) = swing_rate(scene), cancelling_terms(scene, horizon)
+    return (swing * swing + (torque / _least_moment(scene) if torque > 0.0 else 0.0),
+            force / scene.body.mass if force > 0.0 else 0.0)
+
+
+def cancelling_terms(scene, horizon):
+    """Return the Cancelling of all effects of a scene, N m and N, up to a time (s)."""
+    frame = scene.frame
     found = [effect.cancelling(frame, scene.initial, horizon) for effect in scene.effects]
     torque = reduce(add, (one.torque for one in found), 0.0)
     force = reduce(add, (one.force for one in found), 0.0) if frame.moves else 0.0
-    return (swing * swing + (torque / _least_moment(scene) if torque > 0.0 else 0.0),
-            force / scene.body.mass if force > 0.0 else 0.0)
+    return Cancelling(torque, force)
 
 
 @compiled

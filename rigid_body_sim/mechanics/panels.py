@@ -20,7 +20,8 @@ from rigid_body_sim.numerics.gauss import rule
 
 COUNT = 16
 POINTS = COUNT + 1       # points of a panel: its beginning and the nodes
-COLUMNS = ENTRIES_SIZE + 1    # rates at a point: those of the entries, then |omega|
+# rates at a point: those of the entries, |omega|, and what of the power is rounding (W)
+OMEGA, NOISE, COLUMNS = ENTRIES_SIZE, ENTRIES_SIZE + 1, ENTRIES_SIZE + 2
 FIRST_TAIL = 12
 TAIL = COUNT - FIRST_TAIL
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)
@@ -66,7 +67,7 @@ NODES, WEIGHTS, TAILS, AT_BEGIN = _tables()
 
 
 @compiled
-def _advice(rates, at, first, last, length, size, slack):
+def _advice(rates, at, first, last, length, size, slack, noise):
     """Return SHORTER, KEPT or LONGER for integrands of one panel.
 
     Parameters
@@ -82,6 +83,8 @@ def _advice(rates, at, first, last, length, size, slack):
         That of the integral: errors count relative to it.
     slack : float
         Share of the integrand by which the trajectory itself is uncertain.
+    noise : float
+        What rounding makes of the coefficients, where large terms cancel in the integrand.
     """
     head, a, b, off = 0.0, 0.0, 0.0, 0.0
     for k in range(first, last):
@@ -100,9 +103,9 @@ def _advice(rates, at, first, last, length, size, slack):
             fit += AT_BEGIN[i] * rates[at + 1 + i, k]
         off = max(off, abs(fit - rates[at, k]))
     nothing = ROUNDING * size
-    if length * off > nothing and off > max(FITS, slack) * head:
+    if length * off > nothing and off > max(max(FITS, slack) * head, noise):
         return SHORTER
-    if length * a <= nothing or a <= SMOOTH * head:
+    if length * a <= nothing or a <= max(SMOOTH * head, noise):
         return LONGER
     if a <= max(SEEN, slack) * head:
         return KEPT
@@ -128,7 +131,7 @@ def _add(rates, at, length, sums):
 
 
 @compiled
-def add_panels(rates, edges, longest, shortest, slack, sums):
+def add_panels(rates, edges, longest, shortest, slack, noise, sums):
     """Add panels of one length, until one should be shorter or the next one longer.
 
     Parameters
@@ -141,6 +144,8 @@ def add_panels(rates, edges, longest, shortest, slack, sums):
         Bounds of the length, s: a panel that is shorter is taken as it is.
     slack : float
         As in `_advice`.
+    noise : float
+        As there, of torques, N m.
     sums : array (SUMS,)
         Integrals, what their sums lost (Kahan), sizes of energy and momentum. They are changed.
 
@@ -150,11 +155,13 @@ def add_panels(rates, edges, longest, shortest, slack, sums):
         The panels that were added; SHORTER, KEPT (all were added) or LONGER.
     """
     for panel in range(len(edges) - 1):
-        at, length, fastest = panel * POINTS, edges[panel + 1] - edges[panel], 0.0
+        at, length, fastest, rough = panel * POINTS, edges[panel + 1] - edges[panel], 0.0, 0.0
         for i in range(POINTS):
-            fastest = max(fastest, rates[at + i, ENTRIES_SIZE])
-        energy = _advice(rates, at, int(WORK), int(IMPULSE), length, sums[ENERGY], slack)
-        momentum = _advice(rates, at, int(IMPULSE), int(LOST), length, sums[MOMENTUM], slack)
+            fastest = max(fastest, rates[at + i, OMEGA])
+            rough = max(rough, rates[at + i, NOISE])
+        energy = _advice(rates, at, int(WORK), int(IMPULSE), length, sums[ENERGY], slack, rough)
+        momentum = _advice(rates, at, int(IMPULSE), int(LOST), length, sums[MOMENTUM], slack,
+                           noise)
         advice = min(energy, momentum)
         if length > shortest and (advice == SHORTER or length * fastest > TURNED):
             return panel, SHORTER

@@ -15,7 +15,7 @@ import numpy as np
 
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import booking, parameters
-from rigid_body_sim.mechanics.bounds import drive, resting, swing_rate
+from rigid_body_sim.mechanics.bounds import cancelling_terms, drive, resting, swing_rate
 from rigid_body_sim.mechanics.energy import DIAGNOSIS, carried_energy
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, WORK
 from rigid_body_sim.mechanics.panels import (
@@ -24,19 +24,22 @@ from rigid_body_sim.mechanics.panels import (
     LONGER,
     MOMENTUM,
     NODES,
+    NOISE,
+    OMEGA,
     SHORTER,
     SUMS,
     add_panels,
 )
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE, STATE_SIZE, TIME
+from rigid_body_sim.scene.state import ANGULAR_VELOCITY, STATE, STATE_SIZE, TIME, VELOCITY
 
 RADIANS = 8.0            # angle of the fastest turn in the longest panel
 UNMOVED = 1.0            # s, the first panel where nothing moves
 AT_ONCE = 256            # panels
 CLOCK = 2.0 ** -46       # share of the time, 64 ulps: the clock resolves no shorter panel
 TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
+CANCELLED = 2.0 ** -48    # share of terms that may cancel: smaller coefficients are rounding
 PLACES = np.array([0.0, *NODES])
 MOST = 2 ** 20
 """Panels between two times that are asked for: seconds of work."""
@@ -55,6 +58,8 @@ class Actors:
     scene : Scene
     wrench : effects.wrench.Wrench, optional
         Held all the time.
+    horizon : float, optional
+        How long the scene is to last, s.
 
     Attributes
     ----------
@@ -66,9 +71,11 @@ class Actors:
         Whether the body is held at a pivot that moves.
     swing, drive : float
         Bounds of the rates (bounds.py), rad/s and rad/s^2.
+    noise : float
+        What rounding leaves of terms of the torque that cancel, N m.
     """
 
-    def __init__(self, scene, wrench=None):
+    def __init__(self, scene, wrench=None, horizon=0.0):
         self._frame = scene.frame
         self._actors = [effect for effect in scene.effects if effect.acting is not None]
         self._actors += [wrench] if wrench else []
@@ -82,6 +89,8 @@ class Actors:
         self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
         self.swing, self.drive = swing_rate(scene), drive(scene, wrench)
         self._resting = resting(scene)
+        terms = cancelling_terms(scene, horizon)
+        self._noise_of_force, self.noise = CANCELLED * terms.force, CANCELLED * terms.torque
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self._frame, time)]
@@ -95,12 +104,15 @@ class Actors:
         return self._held[place]
 
     def rates(self, p, states):
-        """Return the rates of the entries and |omega| at states (n, 14), shape (n, 6)."""
+        """Return the rates of the entries, |omega|, noise of the power, at states (n, 14)."""
         if self._kernels is None:
             source = _source(self._acting(-math.inf), self._frame.path is not None)
             self._kernels = specialise(booking, acting=source)
         out = np.empty((len(states), COLUMNS))
         self._kernels.rates(p, states, out)
+        x, y, z = states[:, VELOCITY].T
+        speed = np.sqrt(x * x + y * y + z * z)
+        out[:, NOISE] = self.noise * out[:, OMEGA] + self._noise_of_force * speed
         return out
 
     def carried(self, vector):
@@ -217,7 +229,7 @@ class Quadrature:
             # the edges are rounded, so a panel may be an ulp of the time longer than asked
             shortest = max(1.001 * least, CLOCK * abs(t) + TINY * self._first)
             added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
-                                       shortest, self._slack, sums)
+                                       shortest, self._slack, self._actors.noise, sums)
             self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)
             if advice == SHORTER:
                 length, most = 0.5 * (edges[added + 1] - edges[added]), 1

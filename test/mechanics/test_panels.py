@@ -18,6 +18,8 @@ from rigid_body_sim.mechanics.panels import (
     LOST,
     MOMENTUM,
     NODES,
+    NOISE,
+    OMEGA,
     POINTS,
     SHORTER,
     SUMS,
@@ -30,7 +32,7 @@ from rigid_body_sim.mechanics.panels import (
 PLACES = np.array([0.0, *NODES])
 
 
-def rates_of(functions, edges, speed=0.0):
+def rates_of(functions, edges, speed=0.0, noise=0.0):
     """Return the rates of panels: one function of time for each of the five entries, |omega|."""
     rates = np.zeros((POINTS * (len(edges) - 1), COLUMNS))
     for k, (begin, end) in enumerate(itertools.pairwise(edges)):
@@ -38,16 +40,18 @@ def rates_of(functions, edges, speed=0.0):
         rows = slice(POINTS * k, POINTS * (k + 1))
         for column, function in functions.items():
             rates[rows, column] = [function(time) for time in times]
-        rates[rows, -1] = speed
+        rates[rows, OMEGA], rates[rows, NOISE] = speed, noise
     return rates
 
 
-def added(functions, edges, longest=math.inf, shortest=0.0, slack=0.0, speed=0.0, size=0.0):
+def added(functions, edges, longest=math.inf, shortest=0.0, slack=0.0, speed=0.0, size=0.0,
+          noise=(0.0, 0.0)):
     """Return (panels added, advice, sums)."""
     sums = np.zeros(SUMS)
     sums[[ENERGY, MOMENTUM]] = size
     edges = np.array(edges, dtype=float)
-    found = add_panels(rates_of(functions, edges, speed), edges, longest, shortest, slack, sums)
+    rates = rates_of(functions, edges, speed, noise[0])
+    found = add_panels(rates, edges, longest, shortest, slack, noise[1], sums)
     return (*found, sums)
 
 
@@ -89,7 +93,7 @@ def test_what_a_sum_loses_is_carried_on():
     sums = np.zeros(SUMS)
     sums[0] = 1e6
     edges = np.linspace(0.0, 1.0, 1001)
-    add_panels(rates_of({0: lambda t: 1e-3}, edges), edges, 0.0, 0.0, 0.0, sums)
+    add_panels(rates_of({0: lambda t: 1e-3}, edges), edges, 0.0, 0.0, 0.0, 0.0, sums)
     assert (sums[0] - 1e6) + sums[LOST] == near(1e-3, rel=1e-12)
 
 
@@ -134,6 +138,16 @@ def test_a_small_error_beside_a_large_integral_is_rounding():
     both = {**sharp, 3: sharp[0]}
     assert added(both, [0.0, 1.0], size=np.array([1e20, 0.0]))[1] == SHORTER
     assert added(both, [0.0, 1.0], size=np.array([0.0, 1e20]))[1] == SHORTER
+
+
+@pytest.mark.parametrize(('column', 'place'), [(0, 0), (1, 0), (2, 1), (4, 1)])
+def test_what_rounding_makes_of_terms_that_cancel_is_no_reason_for_short_panels(column, place):
+    """A sawtooth of 1e-9 is noise beside 3e-8, where the panel begins too; of less it is not."""
+    functions = {column: lambda t: 1e-9 * (2.0 * (1e3 * t % 1.0) - 1.0) + 1e-9 * (t == 0.0)}
+    for noise, advice in ((3e-8, LONGER), (1e-11, SHORTER)):
+        noises = [0.0, 0.0]
+        noises[place] = noise
+        assert added(functions, [0.0, 1.0], noise=noises)[1] == advice
 
 
 @pytest.mark.parametrize('scale', [1e-10, 1e10])
