@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
+from rigid_body_sim.scene.expressions import onsets as onset_search
 from rigid_body_sim.scene.expressions import reader
-from rigid_body_sim.scene.expressions.onsets import MANY, onsets
+from rigid_body_sim.scene.expressions.onsets import MANY, MOST, STRETCHES, onsets
 from rigid_body_sim.scene.scene import parse_scene
 
 
@@ -89,3 +90,17 @@ def test_steps_end_there_whatever_acts(effect, constraint):
     assert found[0] < 49.88 and ((found > 49.88) & (found < 50.1)).sum() >= 6
     if effect:
         assert acting.breakpoints == of('exp(-((t - 50)/0.02)^2)')
+
+
+def test_what_is_lively_throughout_is_one_short_part_from_there_on():
+    """A sine of 1e6/s takes all values in any part that is looked at: the search ends at once."""
+    def function(times):
+        return -np.ones(len(times[0])), np.ones(len(times[0]))
+    found = onset_search._parts(function)
+    assert found == ([0.0], [STRETCHES[1] / MOST], [False])
+
+
+def test_a_slope_that_is_constant_but_not_nothing_is_no_rest():
+    slope, points = np.array([3.0, 0.0, -3.0]), np.ones((4, 3))
+    rests, resolved = onset_search._judged((slope, slope), points * np.abs(slope), 3.0, False)
+    assert (rests.tolist(), resolved.tolist()) == ([False, True, False], [True] * 3)
