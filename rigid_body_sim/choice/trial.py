@@ -286,10 +286,7 @@ class Trial:
         below = None if finer is None else self._below(finer, tolerance)
         errors = self._errors(tolerance, below)
         if errors is None or not float(errors[0]) < math.inf:
-            if self._promised is None:
-                return forecast.Forecast(None, None)
-            return forecast.Forecast(
-                self._promised, horizon if self._promised <= accuracy else 0.0)
+            return self._untold()
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
         beside = None if below is None or self._allowed else self._states(below)
         if float(errors.max()) < MAGNIFIED:
@@ -316,6 +313,13 @@ class Trial:
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
         last = max(last, self._later(here, errors, beside))
         return forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon, last)
+
+    def _untold(self):
+        """Return the Forecast where runs tell nothing: what the table promises, if it does."""
+        promised = self._promised
+        if promised is None:
+            return forecast.Forecast(None, None)
+        return forecast.Forecast(promised, self._horizon if promised <= self._accuracy else 0.0)
 
     def _errors(self, tolerance, below):
         """Return the errors at looks, rad, beside a run that errs less; None if nothing tells.
