@@ -9,7 +9,7 @@ from rigid_body_sim.mechanics.energy import DIAGNOSIS
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.numerics.functions import hypot3_of_each
-from rigid_body_sim.numerics.rotations import angles_between, normalised
+from rigid_body_sim.numerics.rotations import angles_between, multiply, normalised
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
 FINER = 2.0 ** -7    # share of a tolerance: that of the finer run, which tells the error
@@ -21,6 +21,23 @@ def apart(states, others):
     angles = np.empty(len(states))
     angles_between(states[:, ORIENTATION], others[:, ORIENTATION], angles)
     return np.where(np.isnan(angles), math.inf, angles)
+
+
+def grown(states, others):
+    """Return by how much the error of a run grows in its second half, rad; infinite for NaN.
+
+    The error is the rotation, as seen from the world, that takes the attitude of the other run to
+    that of this one. The largest angle counts between that at the end of the first half and a
+    later one: an error that stays counts as none, and one that changes its direction counts.
+    """
+    of_error = np.array([
+        multiply(*one, -x, -y, -z, w) for one, (x, y, z, w) in zip(
+            states[:, ORIENTATION].tolist(), others[:, ORIENTATION].tolist(), strict=True)])
+    later = of_error[max(len(of_error) // 2 - 1, 0):]
+    angles = np.empty(len(later))
+    angles_between(np.repeat(later[:1], len(later), axis=0), later, angles)
+    found = float(angles.max())
+    return math.inf if math.isnan(found) else found
 
 
 def apart_from_mean(states, finer):

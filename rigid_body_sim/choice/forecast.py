@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigid_body_sim.choice.comparison import lengths
+from rigid_body_sim.choice.comparison import grown, lengths
 from rigid_body_sim.choice.measured import makes_heat
 from rigid_body_sim.mechanics.bounds import (
     angles_turned,
@@ -15,10 +15,15 @@ from rigid_body_sim.mechanics.bounds import (
     pushed_unbounded,
     unbounded,
 )
-from rigid_body_sim.numerics.functions import log, power
+from rigid_body_sim.numerics.functions import hypot3, log, power
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
 POWERS = 1.0, 2.0        # of the angle that a body turns: those with which errors grow
+STEADY = 2.0 ** -10      # share of the angular velocity: a body spins steadily where less changes
+ROUNDING = 2.0 ** -40    # share of it below which changes are rounding
+LEAST = 8                # looks that show a steady spin
 
 
 class Forecast(NamedTuple):
@@ -63,13 +68,15 @@ def missed(accuracy, horizon, expected, met_until):
             f'{horizon:g} s is {shown} rad{until}')
 
 
-def later(scene, states, errors, longer):
+def later(scene, states, errors, longer, beside=None):
     """Return the error (rad) at a time beyond a run, from its errors at looks.
 
     It grows in proportion to time, as the number of steps does, or to the angle that a body turns
     which heat slows. Where a drive makes a body turn ever faster, errors go with the angle that it
     turns, or with a power of it up to the square: then those of the momentum, which add up, turn
-    the body. What the errors did in the second half of the run tells the power.
+    the body. What the errors did in the second half of the run tells the power. Where heat has
+    made a body spin steadily, the errors made until then stay, and grow only by what they grew in
+    the second half.
 
     Parameters
     ----------
@@ -79,10 +86,14 @@ def later(scene, states, errors, longer):
         rad.
     longer : float
         The later time over that of the run, at least 1.
+    beside : array (n, 14), optional
+        The run beside which these are the errors of the attitude.
     """
     last = float(errors.max())
     if longer == 1.0:
         return last
+    if beside is not None and spins_steadily(scene, states):
+        return last + 2.0 * (longer - 1.0) * grown(states, beside)
     faster, so_far = _spin_up(scene, states)
     if faster == 0.0 or not 0.0 < last < math.inf:
         return last * turned_later(scene, states, longer)
@@ -121,6 +132,90 @@ def turned_later(scene, states, longer):
         yet = min(yet, 0.25 * last / (before - last))
     # the first rate counts up to the first look, too
     return min(longer, 1.0 + yet * n * last / float(turned[-1] + rates[0]))
+
+
+def spins_steadily(scene, states):
+    """Return whether heat has made a body spin steadily in the second half of a run.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run, at looks.
+    """
+    return makes_heat(scene) and is_steady(scene, states[len(states) // 2 - 1:])
+
+
+def is_steady(scene, states):
+    """Return whether a body spins about an axis of its own and will go on to.
+
+    Hardly anything changes of its angular velocity along its own axes, and no more in the second
+    half than in the first. Inner heat leaves a body at the axis of its largest moment only.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        A part of a run, at looks.
+    """
+    rates = states[:, ANGULAR_VELOCITY]
+    if len(rates) < LEAST:
+        return False
+    size, middle = float(lengths(rates[-1:])[0]), len(rates) // 2
+    if not 0.0 < size < math.inf:
+        return False
+    whole, before, last = (float((part.max(axis=0) - part.min(axis=0)).max()) / size
+                           for part in (rates, rates[:middle + 1], rates[middle:]))
+    if not (whole <= STEADY and last <= max(before, ROUNDING)):
+        return False
+    return scene.inner_dissipation == 0.0 or _about_largest(scene, rates[-1])
+
+
+def _about_largest(scene, omega):
+    """Return whether a body spins about the axis of its largest moment, up to a share STEADY."""
+    moments, spins = _along_axes(scene, omega)
+    most = max(moments)
+    off = [(1.0 - one / most) * spin for one, spin in zip(moments, spins, strict=True)]
+    return hypot3(*off) <= STEADY * hypot3(*spins)
+
+
+def _along_axes(scene, omega):
+    """Return the principal moments (kg m^2) of a body, and its rates (rad/s) about their axes."""
+    inertia = scene.constraint.inertia(scene.body)
+    return inertia.moments, rotate_back(*inertia.axes, *omega.tolist())
+
+
+def may_tumble(scene, states, yet):
+    """Return whether inner heat may make a body tumble in a time to come that spins as yet.
+
+    The body has the momentum L and the kinetic energy T = L^2/2I - d, I its least moment. It turns
+    about the axis of I until T falls to L^2/2J, J the middle one; passing there magnifies errors.
+    With x = 1/I for each axis, and p the share of L^2 along it, heat is
+
+        d' = c L^4 var(x) <= c L^4 (max x - mean x)(mean x - min x) <= 2 c L^2 (max x - min x) d
+
+    by Bhatia and Davis (Amer. Math. Monthly 107, 2000), since L^2 (max x - mean x) is 2 d.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run, at looks.
+    yet : float
+        s.
+    """
+    if scene.inner_dissipation == 0.0 or not np.isfinite(states[-1]).all():
+        return False
+    moments, spins = _along_axes(scene, states[-1, ANGULAR_VELOCITY])
+    least, middle, most = sorted(moments)
+    if least == 0.0:
+        return False
+    momenta = [one * spin for one, spin in zip(moments, spins, strict=True)]
+    square = dot(momenta, momenta)
+    below = 0.5 * dot(momenta, [(1.0 / least - 1.0 / one) * part
+                                for one, part in zip(moments, momenta, strict=True)])
+    passes = 0.5 * square * (1.0 / least - 1.0 / middle)
+    if below > passes:    # it has passed already
+        return False
+    folds = 2.0 * scene.inner_dissipation * square * (1.0 / least - 1.0 / most) * yet
+    return below > 0.0 and log(passes / below) <= folds
 
 
 def _comes_to_rest(scene):

@@ -32,6 +32,7 @@ from rigid_body_sim.scene.state import VELOCITY
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
+SETTLING = 2 ** 16    # steps of a coarse run to the horizon that shows whether a body settles
 FEW = 4    # looks of a part of a run that tell how it goes on
 LEAST, MOST, AIM = 0.1, 0.5, 0.22     # shares of the accuracy: errors that are taken; the aim
 ALONE = 16          # factor on the steps of the only method there is: a disk turns ever faster
@@ -86,6 +87,7 @@ class Trial:
         time = float(self._times[-1])
         if time < horizon and measured.makes_heat(scene):
             self._go_on(time, self._radians)
+            self._go_on_settling(float(self._times[-1]), self._radians)
 
     def _begin_at(self, pace, most):
         """Let runs end where a body of a pace (rad/s) has turned far, at most at a time (s)."""
@@ -136,6 +138,23 @@ class Trial:
             except TooMuchWork:    # what it does at rest takes many steps
                 self._begin(time, radians)
 
+    def _go_on_settling(self, time, radians):
+        """Let runs end at the horizon if inner heat makes the body spin steadily long before.
+
+        It does where it spins so in LONGER times the time (s) of a trial. The rest then costs
+        little, and the errors made until then stay.
+        """
+        if self._scene.inner_dissipation == 0.0 or time == self._horizon:
+            return
+        self._begin(self._horizon, max(radians, trial_time.LONGER * trial_time.RADIANS))
+        with contextlib.suppress(TooMuchWork):
+            states = self._run(self._coarsest, SETTLING)
+            if forecast.is_steady(self._scene,
+                                  states[self._times >= trial_time.LONGER * time]):
+                self._runs[self._coarsest] = states
+                return
+        self._begin(time, radians)
+
     def take(self, tolerance):
         """Return the tolerance to take where the table has the one given.
 
@@ -145,7 +164,8 @@ class Trial:
             A run takes more steps than the motion asks for.
         """
         if self._sees_no_end:
-            return self._grid(self.tolerance_from(tolerance) / COARSER)
+            found = self.tolerance_from(tolerance)
+            return self._grid((min(found, tolerance) if self._may_tumble else found) / COARSER)
         if (self._radians <= SHORT and self._promised <= self._accuracy
                 and not (self._flies or _slim(self._scene))):
             return self._grid(tolerance / COARSER)
@@ -242,7 +262,15 @@ class Trial:
     def _sees_no_end(self):
         """Whether something changes behind the trial: nobody knows what errors do from then on."""
         seen = np.count_nonzero(self._times > self._changes[-1])
-        return self._longer > 1.0 and bool(seen < FEW)
+        return self._longer > 1.0 and (bool(seen < FEW) or self._may_tumble)
+
+    @property
+    def _may_tumble(self):
+        """Whether the body spins so far, and inner heat may make it tumble behind the trial."""
+        if self._scene.inner_dissipation == 0.0 or not self._runs:
+            return False
+        return forecast.may_tumble(self._scene, self._runs[min(self._runs)],
+                                   self._horizon - float(self._times[-1]))
 
     @property
     def is_cut_short(self):
@@ -258,11 +286,9 @@ class Trial:
         below = None if finer is None else self._below(finer, tolerance)
         errors = self._errors(tolerance, below)
         if errors is None or not float(errors[0]) < math.inf:
-            if self._promised is None:
-                return forecast.Forecast(None, None)
-            return forecast.Forecast(
-                self._promised, horizon if self._promised <= accuracy else 0.0)
+            return self._untold()
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
+        beside = None if below is None or self._allowed else self._states(below)
         if float(errors.max()) < MAGNIFIED:
             best, prototype = self._states(finest), self.prototype.at(finest, self._most)
             try:
@@ -279,14 +305,21 @@ class Trial:
                 begun = self._beside_one_begun_later(tolerance, below or tolerance)
                 told = max(float(errors.max()), float(lost.max()))
                 if SHARED * told < float(begun.max()) < math.inf:    # one that fails tells nothing
-                    errors = begun
+                    errors, beside = begun, None
         else:
             lost = np.zeros(len(times))
         for one, error, since in self._allowed:
             if one in (tolerance, finer):    # both allow it themselves, and do not differ by it
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
-        last = max(last, self._later(here, errors))
+        last = max(last, self._later(here, errors, beside))
         return forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon, last)
+
+    def _untold(self):
+        """Return the Forecast where runs tell nothing: what the table promises, if it does."""
+        promised = self._promised
+        if promised is None:
+            return forecast.Forecast(None, None)
+        return forecast.Forecast(promised, self._horizon if promised <= self._accuracy else 0.0)
 
     def _errors(self, tolerance, below):
         """Return the errors at looks, rad, beside a run that errs less; None if nothing tells.
@@ -433,7 +466,8 @@ class Trial:
         here, finer = self._states(tolerance), self._reference(tolerance)
         if finer is None:
             return None
-        return self._later(here, self._apart(tolerance, finer))
+        beside = None if self._flies else self._states(finer)
+        return self._later(here, self._apart(tolerance, finer), beside)
 
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""
@@ -445,20 +479,22 @@ class Trial:
             shares = np.maximum(shares, comparison.velocities_apart(here, best, speed))
         return np.maximum(comparison.apart(here, best), MOMENTA * shares)
 
-    def _later(self, states, errors):
-        """Return the error (rad) at the horizon after those of a run.
+    def _later(self, states, errors, beside=None):
+        """Return the error (rad) at the horizon after those of a run, beside another one.
 
         Its part since the last change tells it, too: what acts then goes on, and adds to the error
         that the run has by then.
         """
-        last, since = forecast.later(self._scene, states, errors, self._longer), self._changes[-1]
+        last = forecast.later(self._scene, states, errors, self._longer, beside)
+        since = self._changes[-1]
         if since == 0.0 or self._longer == 1.0 or self._sees_no_end:
             return last    # no more is known
         part = self._times > since
         longer = (self._horizon - since) / (float(self._times[-1]) - since)
         before = float(errors[~part].max(initial=0.0))
         own = np.maximum(errors[part] - before, 0.0) if before < math.inf else errors[part]
-        return max(last, before + forecast.later(self._scene, states[part], own, longer))
+        beside = None if beside is None else beside[part]
+        return max(last, before + forecast.later(self._scene, states[part], own, longer, beside))
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""

@@ -10,6 +10,7 @@ numba.
 import math
 
 from rigid_body_sim.choice.comparison import FINER
+from rigid_body_sim.choice.forecast import Forecast
 from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
 from rigid_body_sim.integrators.marching.contact_course import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
@@ -36,6 +37,10 @@ class TrialOnPlane(Trial):
     def _likely(self, tolerance):
         """Return where the search begins: no table is behind the tolerance given."""
         return COARSER * tolerance
+
+    def _untold(self):
+        """Return the Forecast of nothing: on a plane nothing was measured that could promise."""
+        return Forecast(None, None)
 
     def _dear(self, tolerance):
         """Return whether a trial at a tolerance on a plane would take more than DEAR steps.

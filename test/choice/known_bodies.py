@@ -45,11 +45,11 @@ class Coasting:
         return None
 
 
-def coasting_scene(*strikes, effects=()):
-    """Return the scene of a ball that coasts, with strikes (time, impulse) and other effects."""
+def coasting_scene(*strikes, effects=(), inertia='[4, 4, 4]'):
+    """Return the scene of a body that coasts, with strikes (time, impulse) and other effects."""
     struck = [f'strike: {{impulse: [{impulse}, 0, 0], point: [0, 1, 0], time: {time}, '
               'frame: body}'
               for time, impulse in strikes]
-    return parse_scene('scene: s\nbody: {mass: 2, inertia: [4, 4, 4]}\nconstraint: free\n'
+    return parse_scene(f'scene: s\nbody: {{mass: 2, inertia: {inertia}}}\nconstraint: free\n'
                        f'effects: [{", ".join([*struck, *effects])}]\n'
                        'initial: {angular_velocity: [0, 0, 3]}\n')

@@ -106,3 +106,19 @@ def test_momenta_are_apart_by_what_the_moments_make_of_the_rates():
         comparison.momenta(scene, states), comparison.momenta(scene, others), 0.0)
     sizes = 17 ** 0.5, 17 ** 0.5, 73 ** 0.5
     assert found == near(np.array([3, 1, 5 ** 0.5]) / sizes, rel=2e-15)    # worst measured: 0
+
+
+def test_an_error_grows_by_what_it_changes_in_the_second_half():
+    """Runs are apart by a rotation in the world, whatever they turn; a reversed one has grown."""
+    angles = np.array([5e-9, 2e-9, 1e-9, -1e-9, -1.5e-9, 1e-9])
+    states, others = np.zeros((2, 6, 14))
+    for k, angle in enumerate(angles):
+        turned = Rotation.from_rotvec([0.3 * k, 1.0, k])
+        error = Rotation.from_rotvec([angle, 0.0, 0.0])
+        states[k, 1:5], others[k, 1:5] = (error * turned).as_quat(), turned.as_quat()
+    assert comparison.grown(states, others) == near(2.5e-9, rel=1e-6)
+    others[4] *= -1.0    # the same attitude
+    assert comparison.grown(states, others) == near(2.5e-9, rel=1e-6)
+    assert comparison.grown(states[-1:], others[-1:]) == 0.0
+    others[4, 1] = math.nan
+    assert comparison.grown(states, others) == math.inf

@@ -193,3 +193,59 @@ def test_an_error_is_told_with_the_figures_that_show_that_it_is_too_large(expect
 def test_what_is_missed_is_said_in_one_line(expected, met_until, line):
     found = forecast.missed(1e-9, 12.5, expected, met_until)
     assert found == (line and f'the accuracy asked, 1e-09 rad, is missed: {line}')
+
+
+INNER = 'internal_dissipation: {coefficient: 0.1}'
+
+
+def spinning(wobble, axis=2, count=64):
+    """Return states of a body at rate 1 about one of its axes, with a wobble of each look."""
+    states = np.zeros((count, 14))
+    states[:, 4] = 1.0
+    states[:, 5 + axis] = 1.0
+    states[:, 5 + (axis + 1) % 3] = wobble(np.arange(1, count + 1) / count)
+    return states
+
+
+@pytest.mark.parametrize(('wobble', 'axis', 'effects', 'expected'), [
+    (lambda t: 0.0 * t, 2, [INNER], True), (lambda t: np.exp(-20.0 * t), 2, [INNER], True),
+    (lambda t: np.exp(-5.0 * t), 2, [INNER], False),           # it still wobbles
+    (lambda t: 1e-9 * np.exp(5.0 * t), 2, [INNER], False),     # ever more
+    (lambda t: 1e-13 * np.exp(t), 2, [INNER], True),           # by rounding
+    (lambda t: 0.0 * t, 0, [INNER], False), (lambda t: 0.0 * t, 1, [INNER], False),
+    (lambda t: 0.0 * t, 2, [], False), (lambda t: math.nan * t, 2, [INNER], False),
+    (lambda t: 0.0 * t, 0, ['drag: {angular: 0.1}'], True)])
+def test_what_heat_has_made_spin_steadily(wobble, axis, effects, expected):
+    scene = coasting_scene(effects=effects, inertia='[1.0, 1.5, 2.0]')
+    states = spinning(wobble, axis)
+    assert forecast.spins_steadily(scene, states) is expected
+    assert not forecast.is_steady(scene, states[:7])    # too few
+
+
+def test_errors_of_a_steady_spin_go_on_as_they_grew_in_the_second_half():
+    scene = coasting_scene(effects=[INNER], inertia='[1.0, 1.5, 2.0]')
+    best = spinning(lambda t: 0.0 * t)
+    ours, half = best.copy(), np.arange(1, 65) / 128.0
+    angle = np.minimum(half, 0.25) * 4e-3 + np.maximum(half - 0.25, 0.0) * 4e-4    # of half a turn
+    ours[:, 3], ours[:, 4] = np.sin(angle), np.cos(angle)
+    errors = comparison.apart(ours, best)
+    assert errors[-1] == near(2.2e-3, rel=1e-6)
+    assert forecast.later(scene, ours, errors, 11.0, best) == near(2.2e-3 + 4e-3, rel=1e-6)
+    assert forecast.later(scene, ours, errors, 1.0, best) == errors[-1]
+    # where the other run is not known, in proportion to time
+    assert forecast.later(scene, ours, errors, 11.0) == near(11.0 * 2.2e-3, rel=1e-6)
+
+
+@pytest.mark.parametrize(('rates', 'yet', 'expected'), [
+    # folds of the energy: 2 c L^2 (1 - 1/2) yet = 0.1 yet; of the wobble half as many. It passes
+    # where the energy below the largest is (1 - 1/1.5)/2 = 1/6 J, now it is 0.375 e^2
+    ([1.0, 1e-6, 0.0], 267.0, False), ([1.0, 1e-6, 0.0], 269.0, True),
+    ([1.0, 0.0, 0.0], 1e6, False),       # exactly about the axis, for ever
+    ([0.1, 0.0, 1.0], 1e6, False),       # it has passed
+    ([math.nan, 0.0, 1.0], 1e6, False), ([0.0, 0.0, 0.0], 1e6, False)])
+def test_where_inner_heat_may_make_a_body_tumble(rates, yet, expected):
+    scene = coasting_scene(effects=[INNER], inertia='[1.0, 1.5, 2.0]')
+    states = np.zeros((4, 14))
+    states[:, 5:8] = rates
+    assert forecast.may_tumble(scene, states, yet) is expected
+    assert not forecast.may_tumble(coasting_scene(effects=[]), states, yet)

@@ -50,6 +50,13 @@ def made_up(monkeypatch, tried, errors, works=()):
     return asked
 
 
+def test_where_runs_take_too_much_work_nothing_is_told(tried, monkeypatch):
+    """The accuracy asked was told, as if measured; a body that had fallen erred by 3 rad."""
+    tried._promised = 1e-9
+    made_up(monkeypatch, tried, lambda tolerance: 0.0, {2.0 ** -k: math.inf for k in range(60)})
+    assert tried.forecast(2.0 ** -30) == (None, None)
+
+
 def test_a_search_begins_at_eight_times_the_tolerance_given(tried):
     assert tried._likely(1e-6) == 8e-6
 

@@ -149,12 +149,13 @@ def _squares(a, b):
 
 @compiled_inline
 def _solve(p, S, y, h):
-    """Solve the equations of the stages; return whether that was possible.
+    """Solve the equations of the stages; return the change that is left: 0, or infinite.
 
+    It is 0 where they settled, and finite where they still moved after the last sweep.
     The change that a sweep makes is looked at in the last stage, each unknown beside its own size.
     """
     _turn(p, S, y, h)
-    smallest, stale = math.inf, 0
+    smallest, change, stale = math.inf, math.inf, 0
     for sweep in range(1, MOST):
         before = load_line(S, NODES - 1)
         _hasten(p, S)
@@ -163,21 +164,24 @@ def _solve(p, S, y, h):
         now = load_line(S, NODES - 1)
         turned_by, spun, slid = _squares(now, before)
         if not turned_by + spun + slid < LARGE:
-            return False
+            return math.inf
         _, spin, slip = _squares(now, STILL)
         change = (turned_by + (spun / spin if spin > 0.0 else spun)
                   + (slid / slip if slip > 0.0 else slid))
         stale = stale + 1 if smallest <= change <= NOISE * NOISE else 0
         if sweep >= FEWEST and (change <= ENOUGH * ENOUGH or stale == STALE):
             S[SWEEPS] = sweep
-            return True
+            return 0.0
         smallest = min(smallest, change)
-    return False
+    return change
 
 
 @compiled
 def step_from(p, w, y, lost, h):
     """Fill row FRESH with the unknowns after a step h from y; the rates at y are in row 0.
+
+    They are filled where the stages did not settle, too. A part of a step whose stages did is that
+    good: all that moves on is rounding, which may be much beside a body that hardly turns.
 
     Returns
     -------
@@ -189,7 +193,8 @@ def step_from(p, w, y, lost, h):
     for n in range(COUPLED):
         for i in range(NODES):
             S[NODES * n + i] = y[n] + C[i] * (h * w[0, n])
-    if not _solve(p, S, y, h):
+    left = _solve(p, S, y, h)
+    if not left < LARGE:
         return math.inf
     for i in range(NODES):
         store_stage(S, stage(c, weight, load_line(S, i)), RATES + i)
@@ -202,7 +207,7 @@ def step_from(p, w, y, lost, h):
         for n in range(WATCHED_SIZE):
             w[i, WATCHED + n] = S[WATCHES + NODES * n + min(i, NODES) - 1]
         w[i, JUMP] = w[0, JUMP]
-    return 0.0
+    return 0.0 if left == 0.0 else math.inf
 
 
 @compiled_inline

@@ -115,7 +115,7 @@ def test_a_step_that_takes_many_sweeps_is_followed_by_a_shorter_one(sweeps, long
 
 
 def solve(monkeypatch, at, unknown='omega', size=1.0):
-    """Return (whether the stages are solved, sweeps) where sweep n leaves an unknown at at(n)."""
+    """Return (what change is left, sweeps) where sweep n leaves an unknown at at(n)."""
     S, done = room()[LANES], []
     store = {'q': contact_gauss_step.store_q, 'omega': contact_gauss_step.store_omega,
              'slip': contact_gauss_step.store_slip}[unknown]
@@ -129,10 +129,10 @@ def solve(monkeypatch, at, unknown='omega', size=1.0):
         monkeypatch.setattr(contact_gauss_step, name, does)
     store(S, (size * at(0), *others), NODES - 1)
     S[SWEEPS] = MOST
-    good = bool(contact_gauss_step._solve(None, S, np.zeros(SIZE), H))
+    left = contact_gauss_step._solve(None, S, np.zeros(SIZE), H)
     sweeps = done.count('hasten')
     assert done == ['turn', *['hasten', 'move', 'turn'] * sweeps]
-    return good, sweeps, int(S[SWEEPS])
+    return left, sweeps, int(S[SWEEPS])
 
 
 @pytest.mark.parametrize(('unknown', 'size'), [
@@ -145,7 +145,7 @@ def test_stages_are_solved_where_a_sweep_changes_them_by_rounding_only(
     needed = next(n for n in range(FEWEST, MOST)
                   if (1.0 + ratio ** (n - 1)) - (1.0 + ratio ** n) <= ENOUGH)
     found = solve(monkeypatch, lambda n: 1.0 + ratio ** n, unknown, size)
-    assert found == (True, needed, needed)
+    assert found == (0.0, needed, needed)
 
 
 @pytest.mark.parametrize(('change', 'solved'), [(0.9, True), (1.1, False)])
@@ -154,16 +154,19 @@ def test_small_changes_that_no_longer_fall_are_rounding(change, solved, monkeypa
     step = change * NOISE
     found = solve(monkeypatch, lambda n: 1.0 + 0.5 * step * (n % 2))
     again = solve(monkeypatch, lambda n: 1.0 + step * (n % 2))
-    assert found == (True, 1 + STALE, 1 + STALE)
-    assert again == ((True, 1 + STALE, 1 + STALE) if solved else (False, MOST - 1, MOST))
+    assert found == (0.0, 1 + STALE, 1 + STALE)
+    assert again == ((0.0, 1 + STALE, 1 + STALE) if solved else (near(step * step, rel=1e-2),
+                                                                 MOST - 1, MOST))
 
 
 def test_stages_that_run_away_or_do_not_settle_are_given_up(monkeypatch):
     for most in (2.0 * LARGE, math.inf, math.nan):
         with np.errstate(invalid='ignore'):
             assert solve(monkeypatch, lambda n, most=most: most if n == 3 else 1.0 + 0.1 ** n) == (
-                False, 3, MOST)
-    assert solve(monkeypatch, lambda n: 1.0 + 0.9 ** n) == (False, MOST - 1, MOST)
+                math.inf, 3, MOST)
+    left = (0.1 * 0.9 ** (MOST - 2)) ** 2    # in the last sweep
+    assert solve(monkeypatch, lambda n: 1.0 + 0.9 ** n) == (
+        near(left, rel=0.1), MOST - 1, MOST)
 
 
 def test_a_step_ends_with_the_mean_of_the_rates_and_keeps_what_is_watched(monkeypatch):
@@ -179,24 +182,28 @@ def test_a_step_ends_with_the_mean_of_the_rates_and_keeps_what_is_watched(monkey
 
     def solved(p, S, y, h):
         seen['first'] = S[:NODES * COUPLED].copy()
-        return seen['good']
+        return seen['left']
     for name, does in (('parameters', lambda p: ('c', 'weight')), ('_solve', solved),
                        ('stage', lambda c, weight, line: (c, weight)),
                        ('store_stage', lambda S, value, at: S.__setitem__(
                            [*range(at, at + NODES * (SIZE + watched), NODES)],
                            [*rates, *(10.0 * (at - RATES) + np.arange(watched))]))):
         monkeypatch.setattr(contact_gauss_step, name, does)
-    seen['good'] = False
-    assert contact_gauss_step.step_from(None, w, y, lost, H) == math.inf
+    for left in (math.inf, math.nan, LARGE):
+        seen['left'] = left
+        assert contact_gauss_step.step_from(None, w, y, lost, H) == math.inf
+        assert not w[contact_step.FRESH, :SIZE].any()
     assert S[SWEEPS] == MOST
     # the first guess goes along the rates at the start
     guess = y[:COUPLED, np.newaxis] + gauss_nodes.C * H * 3.0
     assert seen['first'] == near(guess.ravel(), rel=1e-15)
-    seen['good'] = True
-    assert contact_gauss_step.step_from(None, w, y, lost, H) == 0.0
     ends = y + H * rates + lost
     ends[:4] /= np.linalg.norm(ends[:4])
-    assert w[contact_step.FRESH, :SIZE] == near(ends, rel=1e-14)
+    # the end is there where stages did not settle, too
+    for left, error in ((1e-20, math.inf), (0.0, 0.0)):
+        w[contact_step.FRESH], seen['left'] = 0.0, left
+        assert contact_gauss_step.step_from(None, w, y, lost, H) == error
+        assert w[contact_step.FRESH, :SIZE] == near(ends, rel=1e-14)
     for i in range(1, contact_step.STAGES):
         expected = 10.0 * (min(i, NODES) - 1) + np.arange(watched)
         expected[contact_gauss_step.JUMP - first] = 77.0
