@@ -130,7 +130,7 @@ def test_the_error_of_a_body_that_inner_heat_settles_is_met_and_foretold(
     """
     monkeypatch.setattr(trial_time, 'RADIANS', TRIED)
     text = TURNING.replace('EFFECT', INNER.replace('HEAT', repr(heat)))
-    error, told = beside_finer(text.replace('[2, 10, 5]', turning), accuracy, 400.0)
+    error, told = beside_finer(text.replace('START', turning), accuracy, 400.0)
     assert error <= accuracy                     # 0.02 to 0.5 of it
     assert error / 2.0 <= told <= 2.0 * error    # 0.98 to 1.15 times
 
@@ -141,7 +141,7 @@ def test_of_a_body_that_may_tumble_behind_the_trial_nothing_is_known(accuracy, m
     monkeypatch.setattr(trial_time, 'RADIANS', TRIED)
     monkeypatch.setattr(trial, 'SETTLING', 2)
     text = TURNING.replace('EFFECT', INNER.replace('HEAT', '0.02'))
-    error, told = beside_finer(text.replace('[2, 10, 5]', '[10, 1e-9, 1e-9]'), accuracy, 400.0)
+    error, told = beside_finer(text.replace('START', '[10, 1e-9, 1e-9]'), accuracy, 400.0)
     assert told is None
     assert error <= accuracy    # 0.09 to 0.12 of it
 
