@@ -648,7 +648,7 @@ def test_a_state_within_a_step_is_there_where_its_stages_do_not_settle():
                         'surface: {sphere: {radius: 0.03}}}\n'
                         f'effects: [gravity: {{g: 9.81}}, sliding_friction: {{mu: {mu}}}]\n'
                         'initial: {velocity: [1, 0, 0]}\n')
-    times = np.linspace(0.0, 1000.0, 101)
+    times = np.array([10.0, 330.0, 460.0, 500.0])    # the last three were left out
     found = Simulation(scene, 'gauss16', accuracy=1e-9, horizon=1000.0).states(times)
     place = times - 0.5 * mu * 9.81 * times * times
     assert np.abs(found.position[:, 0] - place).max() < 1e-10    # measured: 1.3e-12
