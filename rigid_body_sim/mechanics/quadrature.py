@@ -39,7 +39,7 @@ UNMOVED = 1.0            # s, the first panel where nothing moves
 AT_ONCE = 256            # panels
 CLOCK = 2.0 ** -46       # share of the time, 64 ulps: the clock resolves no shorter panel
 TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
-CANCELLED = 2.0 ** -48    # share of terms that may cancel: smaller coefficients are rounding
+CANCELLED = 2.0 ** -48   # share of terms that may cancel: smaller coefficients are rounding
 PLACES = np.array([0.0, *NODES])
 MOST = 2 ** 20
 """Panels between two times that are asked for: seconds of work."""
@@ -104,7 +104,7 @@ class Actors:
         return self._held[place]
 
     def rates(self, p, states):
-        """Return the rates of the entries, |omega|, noise of the power, at states (n, 14)."""
+        """Return the rates at states (n, 14): of the entries, |omega|, noise of the power."""
         if self._kernels is None:
             source = _source(self._acting(-math.inf), self._frame.path is not None)
             self._kernels = specialise(booking, acting=source)

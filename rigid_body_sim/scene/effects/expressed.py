@@ -11,7 +11,7 @@ from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.protocol import Acting, Cancelling, Effect, Potential, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
-from rigid_body_sim.scene.expressions.cancelling import balancing
+from rigid_body_sim.scene.expressions.cancelling import balancing, cancelling_or_balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSION, Expression
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.expressions.source import ATTITUDE, HINGE, PLACE, STATE_NAMES
@@ -79,7 +79,8 @@ class ExpressedTorque(Effect):
 
     def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
         """Return the size of its terms that may cancel."""
-        return Cancelling(balancing(self.trees, self.parameters, frame, start, horizon), 0.0)
+        return Cancelling(
+            cancelling_or_balancing(self.trees, self.parameters, frame, start, horizon), 0.0)
 
     def acting(self, frame: Frame, time: float) -> tuple[Acting, ...]:
         """Return the couple; one of zero does not act."""

@@ -13,7 +13,7 @@ from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
 from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Cancelling, Effect, Pull
 from rigid_body_sim.scene.expressions import actions, formulas, tree
-from rigid_body_sim.scene.expressions.cancelling import balancing
+from rigid_body_sim.scene.expressions.cancelling import cancelling_or_balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
 from rigid_body_sim.scene.expressions.onsets import onsets
 from rigid_body_sim.scene.frame import Frame
@@ -90,7 +90,7 @@ class Force(Effect):
 
     def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
         """Return the size of its terms that may cancel, and their moment."""
-        size = balancing(self.trees, self.parameters, frame, start, horizon)
+        size = cancelling_or_balancing(self.trees, self.parameters, frame, start, horizon)
         return Cancelling(size * hypot3(*minus(self.at, frame.point)), size)
 
     @property

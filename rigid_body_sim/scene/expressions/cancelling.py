@@ -43,10 +43,10 @@ def cancelling(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float]
 
 def balancing(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float], ...],
               frame: Frame, start: State, horizon: float) -> float:
-    """Return the size of the terms of a law, which others may balance where a body starts.
+    """Return the size of the terms of a law, which others may balance where a body rests at first.
 
-    Of a law of place, attitude or the angle of a hinge its values count, and what may cancel in
-    them, where the body rests at first; or what may cancel wherever it is.
+    Its values count there, and what may cancel in them. It is 0 of a body that moves, and of a law
+    that does not depend on place, attitude or the angle of a hinge.
 
     Parameters
     ----------
@@ -55,11 +55,24 @@ def balancing(trees: tuple[tree.Term, ...], parameters: tuple[tuple[str, float],
     frame : Frame
     start : State
     """
-    anywhere = cancelling(trees, parameters, horizon)
     if tree.names(*trees).isdisjoint(POSE) or any(start.angular_velocity) or any(start.velocity):
-        return anywhere
+        return 0.0
     inner, values = _sizes_in(trees, (*parameters, *_numbers(frame, start)), horizon)
-    return max(anywhere, inner + values)
+    return inner + values
+
+
+def cancelling_or_balancing(trees: tuple[tree.Term, ...],
+                            parameters: tuple[tuple[str, float], ...],
+                            frame: Frame, start: State, horizon: float) -> float:
+    """Return the larger size: of what may cancel in a law, or of what others may balance.
+
+    Parameters
+    ----------
+    trees, parameters, frame, start, horizon
+        As above.
+    """
+    return max(cancelling(trees, parameters, horizon),
+               balancing(trees, parameters, frame, start, horizon))
 
 
 def _numbers(frame, start):
@@ -81,7 +94,8 @@ def _sizes_in(trees, parameters, horizon):
     """Return the size of terms that may cancel in the values of trees, and of the values."""
     if not tree.names(*trees):
         return 0.0, 0.0
-    edges = np.arange(PARTS + 1.0) * (horizon / PARTS)
+    parts = PARTS if 't' in tree.names(*trees) else 1
+    edges = np.arange(parts + 1.0) * (horizon / parts)
     given = {'t': (edges[:-1], edges[1:])}
     given |= {name: fixed(value, edges[1:]) for name, value in parameters}
     found = ranges(trees, given)

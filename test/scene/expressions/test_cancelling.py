@@ -7,7 +7,11 @@ import pytest
 from near import near
 
 from rigid_body_sim.scene.expressions import reader
-from rigid_body_sim.scene.expressions.cancelling import balancing, cancelling
+from rigid_body_sim.scene.expressions.cancelling import (
+    balancing,
+    cancelling,
+    cancelling_or_balancing,
+)
 from rigid_body_sim.scene.expressions.source import STATE_NAMES
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.state import State
@@ -90,7 +94,9 @@ def test_laws_of_the_place_count_where_a_body_starts(scene, text, expected):
     for place in (7, 12):
         vector = scene.initial.vector.copy()
         vector[place] = 1e-3
-        assert balancing((tree, zero, zero), (), scene.frame, State(vector), 100.0) == (
+        law = (tree, zero, zero), (), scene.frame, State(vector), 100.0
+        assert balancing(*law) == 0.0
+        assert cancelling_or_balancing(*law) == (
             5.0 if ' - 1)' in text or ' - 0.5)' in text else 0.0)
 
 
