@@ -79,20 +79,23 @@ def signals():
     os.set_blocking(writing, False)
 
     def listen():
-        # the interpreter writes the number of each signal; a zero ends this thread
-        while os.read(reading, 1) != b'\0':
-            stop.signalled()
+        # the interpreter writes the number of each signal that anybody handles; a zero ends this
+        while number := os.read(reading, 1)[0]:
+            if number in ours:
+                stop.signalled()
 
     listener = threading.Thread(target=listen, name='signals', daemon=True)
-    before = {number: signal.signal(number, lambda *_: None) for number in ours}
+    # the pipe is there before the first handler and until the last one has gone, since a signal
+    # that is handled but not written to it is lost
     pipe_before = signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
     listener.start()
+    before = {number: signal.signal(number, lambda *_: None) for number in ours}
     try:
         yield stop
     finally:
-        signal.set_wakeup_fd(pipe_before)
         for number, handler in before.items():
             signal.signal(number, handler)
+        signal.set_wakeup_fd(pipe_before)
         os.write(writing, b'\0')
         listener.join()
         os.close(reading)

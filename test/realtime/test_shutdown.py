@@ -66,6 +66,33 @@ def test_signals_ask_for_the_end_and_are_as_before_after_it(later, number):
     assert signal.set_wakeup_fd(-1) == -1
 
 
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_that_comes_as_its_handler_is_set_is_heard(later, monkeypatch, number):
+    """It was lost: the pipe was there after the handlers only."""
+    set_handler, sent = signal.signal, []
+
+    def and_send(handled, handler):
+        replaced = set_handler(handled, handler)
+        if handled == number and not sent:
+            sent.append(handled)
+            signal.raise_signal(handled)
+        return replaced
+    monkeypatch.setattr(signal, 'signal', and_send)
+    with shutdown.signals() as stop:
+        assert stop._event.wait(60.0)
+        assert stop.by_signal
+
+
+def test_a_signal_that_something_else_handles_does_not_end_it():
+    before, heard = signal.signal(signal.SIGALRM, lambda *_: None), []
+    with shutdown.signals() as stop:
+        stop.signalled = lambda: heard.append(1)
+        signal.raise_signal(signal.SIGALRM)
+        signal.raise_signal(signal.SIGTERM)
+    signal.signal(signal.SIGALRM, before)
+    assert heard == [1]
+
+
 def test_a_signal_at_the_very_end_does_not_hide_that_it_is_the_end(later, monkeypatch):
     """Both are in the pipe at once, since the thread that reads it was busy with another one."""
     busy, ended, write = threading.Event(), threading.Event(), os.write
