@@ -7,7 +7,7 @@ import pytest
 from near import near
 from soak import IN_SOAK, some_of
 
-from rigid_body_sim.choice import comparison, trial, trial_time
+from rigid_body_sim.choice import comparison, trial_runs, trial_time
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.scene.scene import parse_scene
@@ -139,7 +139,7 @@ def test_the_error_of_a_body_that_inner_heat_settles_is_met_and_foretold(
 def test_of_a_body_that_may_tumble_behind_the_trial_nothing_is_known(accuracy, monkeypatch):
     """The tolerance is that of the table, to be safe, and the error is met."""
     monkeypatch.setattr(trial_time, 'RADIANS', TRIED)
-    monkeypatch.setattr(trial, 'SETTLING', 2)
+    monkeypatch.setattr(trial_runs, 'SETTLING', 2)
     text = TURNING.replace('EFFECT', INNER.replace('HEAT', '0.02'))
     error, told = beside_finer(text.replace('START', '[10, 1e-9, 1e-9]'), accuracy, 400.0)
     assert told is None
