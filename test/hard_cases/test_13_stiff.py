@@ -149,6 +149,7 @@ def test_numbers_whose_products_are_no_doubles_are_refused(scene_of):
     refused_in_one_line(scene_of())
 
 
+@pytest.mark.without_numba
 def test_a_march_gives_up_where_the_way_ahead_asks_for_too_many_steps():
     top = scene(body={'mass': 1.0, 'inertia': [1, 2, 3], 'center_of_mass': [0, 0, 1]},
                 effects=[{'gravity': {'g': 1e60}}], initial={'tilt': 1.0})
@@ -320,6 +321,7 @@ def test_events_that_doubles_do_not_tell_apart_are_not_looked_for(parts):
     assert np.isfinite(simulation.vector).all()
 
 
+@pytest.mark.without_numba
 def test_a_march_in_slices_has_the_bits_of_one_that_is_asked_for_each_state():
     top = load_scene('driven_body')
     once, often = (Stepped(top, 'dop8', 1e-9).start(top.initial.vector) for _ in range(2))
