@@ -353,7 +353,7 @@ def test_a_run_that_ends_keeps_every_tick_before_and_the_event(
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('effect', 'line', 'count'), [
-    ("torque: {value: ['sqrt(0.0305 - t)', 0, 0]}", 'dop8 on fault: at t = 0.0304', 31),
+    ("torque: {value: ['sqrt(0.0305 - t)', 0, 0]}", 'dop8 on fault: at t = 0.030', 31),
     ('strike: {impulse: [1e75, 0, 0], point: [0, 1e75, 0], time: 0.0205}',
      'fault: strike: at 0.0205 s it would do a work of', 21)])
 def test_a_run_that_cannot_go_on_keeps_every_tick_before(tmp_path, capsys, effect, line, count):

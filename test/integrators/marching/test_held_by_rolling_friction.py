@@ -290,8 +290,9 @@ def test_a_hoop_that_rolls_straight_stops_where_it_says_and_stands():
     start, end = sim.states([0.0, 4.0])
     gone = end.position - start.position
     assert np.hypot(*gone[:2]) == pytest.approx(v * v / (C * G), abs=1e-12)
-    # the fall grows out of rounding: 7e-11 rad/s after 2 s; measured along the axis: 7e-25
-    assert np.abs(end.angular_velocity).max() < 1e-9
+    # the fall grows out of rounding; measured of 8 starts nearby: 3e-11 to 1.1e-9 rad/s, and 3e-23
+    # along the axis
+    assert np.abs(end.angular_velocity).max() < 1e-8
     assert end.angular_velocity[2] == pytest.approx(0.0, abs=1e-15)
 
 
