@@ -22,8 +22,8 @@ class Kinked:
 
     floor = Truth.floor
 
-    def __init__(self, scene, settings, parameters, motion=None):
-        base = Truth(scene, settings, parameters, motion)
+    def __init__(self, scene, settings, parameters, motion=None, most=math.inf):
+        base = Truth(scene, settings, parameters, motion, most)
         self._copies = [_Copy(base, row, parameters) for row in range(len(base.y))]
 
     def to(self, time):

@@ -19,6 +19,23 @@ TOLERANCE = 1e-18        # of a step, relative
 WAITS = 8                # steps after one that was too long before a longer one is tried
 
 
+class TooMuchWork(Exception):
+    """The truth needs more steps than it may take."""
+
+
+class Steps:
+    """The steps that a truth may still take; all copies of a start share them."""
+
+    def __init__(self, most=math.inf):
+        self.left = most
+
+    def take(self):
+        """Take one, or raise TooMuchWork."""
+        self.left -= 1
+        if self.left < 0:
+            raise TooMuchWork
+
+
 class Truth:
     """Copies of a scene's body, moved on by extrapolation of the modified midpoint rule.
 
@@ -29,8 +46,9 @@ class Truth:
 
     jumped, turned = WIDE(0), 0.0
 
-    def __init__(self, scene, settings, parameters, motion=None):
+    def __init__(self, scene, settings, parameters, motion=None, most=math.inf):
         body, kind = scene.body, scene.constraint.kind
+        self.steps = Steps(most)
         self.kind, self.effects = kind, settings
         self.mass = WIDE(body.mass)
         tensor = np.array(body.about_center.matrix, dtype=float).astype(WIDE)
@@ -154,6 +172,7 @@ class Truth:
         All levels of the extrapolation go side by side, the one with most steps first. They follow
         the changes of y: extrapolation magnifies the rounding of what it is given a hundred times.
         """
+        self.steps.take()
         size, count = len(y), 2 * np.arange(LEVELS, 0, -1)
         s = np.repeat(h / count.astype(WIDE), size)[:, None]
         start, before = np.tile(y, (LEVELS, 1)), np.zeros((LEVELS * size, y.shape[1]), dtype=WIDE)
