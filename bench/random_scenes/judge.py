@@ -12,7 +12,7 @@ from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
 from random_scenes.looks import looks
 from random_scenes.new_language import MOTIONS
-from random_scenes.truth import HALF_ULP, TooMuchWork, Truth
+from random_scenes.truth import HALF_ULP, MOVED, TooMuchWork, Truth
 from random_scenes.wide import WIDE, angle
 from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.scene.scene import parse_scene
@@ -26,17 +26,18 @@ LONGEST_IN_PYTHON = 600  # without compilation
 LONGEST_TRUTH = 600      # the truth of a scene
 STEPS = 2000             # of the truth, in all copies: what they do not reach is left out
 ENOUGH = 16              # looks that were reached; of fewer, the horizon is drawn nearer
+LESS = 2.0 ** 11, 2.0 ** 3    # half ulps by which a start is moved that is magnified: to 12 mrad
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 
 
-def truth_of(scene, most=math.inf):
+def truth_of(scene, most=math.inf, moved=MOVED):
     """Return what follows a scene with 64-bit mantissas, at its start, by `most` steps."""
     read = yaml.safe_load(scene.text)
     settings = [next(iter(one.items())) for one in read['effects']]
     kinked = any(word in scene.text for word in WORDS) or getattr(scene.constraint, 'winds', False)
     follow = BallTruth if scene.constraint.kind == 'table' else Kinked if kinked else Truth
     motion = next((one for one in MOTIONS if str(list(one[0])) == str(_motion(read))), None)
-    return follow(scene, settings, read.get('parameters', {}), motion, most)
+    return follow(scene, settings, read.get('parameters', {}), motion, most, moved)
 
 
 def _motion(read):
@@ -53,15 +54,19 @@ def known(scene, duration):
     body may turn a million times, and what goes wrong in that shows in a thousand.
     """
     while True:
-        times, attitudes, floors, jumped = _followed(scene, looks(duration, LOOKS))
+        times, attitudes, floors, jumped = _followed(scene, looks(duration, LOOKS), STEPS)
         if len(times) >= ENOUGH:
-            return times, attitudes, max(floors), jumped
+            break
         duration = float(times[-1]) if len(times) else duration / LOOKS
+    for moved in LESS:
+        if max(floors) == math.inf:
+            floors = _followed(scene, times, math.inf, moved)[2]
+    return times, attitudes, max(floors), jumped
 
 
-def _followed(scene, times):
-    """Return what `known` returns, with all floors and the times that STEPS steps reach."""
-    truth = truth_of(scene, STEPS)
+def _followed(scene, times, most, moved=MOVED):
+    """Return what `known` returns, with all floors and the times that so many steps reach."""
+    truth = truth_of(scene, most, moved)
     first, fastest, attitudes, floors = truth.rate, 0.0, [], []
     jumped = float(truth.jumped)
     for end in times:
