@@ -27,7 +27,7 @@ from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drives, pushed_unbounded
 from rigid_body_sim.numerics.functions import log, power
-from rigid_body_sim.scene.state import VELOCITY
+from rigid_body_sim.scene.state import TIME, VELOCITY
 
 SHORT = 3.0     # rad: over less there is no trial, the run costs some microseconds
 SLIM = 10.0     # quotient of moments
@@ -303,8 +303,9 @@ class Trial:
                 around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
                 begun = self._beside_one_begun_later(tolerance, below or tolerance)
-                told = max(float(errors.max()), float(lost.max()))
-                if SHARED * told < float(begun.max()) < math.inf:    # one that fails tells nothing
+                told, apart = max(float(errors.max()), float(lost.max())), float(begun.max())
+                if SHARED * told < apart < math.inf and (    # one that fails tells nothing
+                        SHARED * self._lost_as_it_begins(below or tolerance) < apart):
                     errors, beside = begun, None
         else:
             lost = np.zeros(len(times))
@@ -454,6 +455,19 @@ class Trial:
                              self._states(finer)[0], self._times, over=float(self._times[0]))
             return comparison.apart(here, begun)
         return np.zeros(len(here))
+
+    def _lost_as_it_begins(self, tolerance):
+        """Return what half an ulp on each number of the first look does to a run, rad.
+
+        That look may have been rounded to more than the start: a slim body that has gained speed
+        spins about its thin axis at a small difference of large numbers.
+        """
+        prototype, start = self.prototype.at(tolerance, self._most), self._states(tolerance)[0]
+        with contextlib.suppress(TooMuchWork):
+            begun = runs.run(self._scene, prototype, start, self._times, over=float(start[TIME]))
+            return float(rounding.conditioning(
+                self._scene, prototype, self._times, begun, start=start).max())
+        return 0.0
 
     def _error(self, tolerance):
         """Return the error at a tolerance at the horizon, rad, or None if nothing tells it.
