@@ -42,6 +42,15 @@ def test_a_sourced_ros_is_unset_and_said_in_one_line():
                 extra='shown: ; @echo nothing to say\n').stdout == 'nothing to say\n'
 
 
+def test_the_soak_runs_each_file_that_leaves_cases_to_it():
+    recipe = (ROOT / 'Makefile').read_text().partition('\nsoak:')[2].partition('\n\n')[0]
+    run = [ROOT / word for word in recipe.split() if word.startswith('test/')]
+    leave = [file for file in (ROOT / 'test').rglob('test_*.py')
+             if '\nfrom soak import ' in file.read_text()]
+    assert len(leave) > 50
+    assert [file for file in leave if not any(file.is_relative_to(place) for place in run)] == []
+
+
 TOOLS = 'chmod', 'cp', 'dirname', 'false', 'grep', 'ln', 'ls', 'mkdir', 'sed', 'sh', 'uname'
 
 

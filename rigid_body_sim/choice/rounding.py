@@ -20,10 +20,18 @@ from rigid_body_sim.choice.measured import HALF_ULP
 from rigid_body_sim.choice.runs import looks, run
 from rigid_body_sim.mechanics.bounds import angles_turned, drive, swing_rate
 from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.rotations import matrix, normalised
-from rigid_body_sim.numerics.vectors import apply, transposed
+from rigid_body_sim.numerics.rotations import matrix, normalised, rotate
+from rigid_body_sim.numerics.vectors import apply, cross, scaled, transposed
 from rigid_body_sim.scene.bodies import IDENTITY
-from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, STATE_SIZE, TIME
+from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.state import (
+    ANGULAR_VELOCITY,
+    ORIENTATION,
+    POSITION,
+    STATE_SIZE,
+    TIME,
+    VELOCITY,
+)
 
 SIGNS = ((1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1), (1, 1, -1, -1, 1, 1, -1),
          (1, -1, -1, 1, 1, -1, -1))
@@ -226,7 +234,26 @@ def _moved(scene, start, signs, many):
         vector[ANGULAR_VELOCITY] *= 1.0 + by[OF_OMEGA][0]    # the rotation stays along the hinge
     else:
         vector[ANGULAR_VELOCITY] += _rounded(scene, vector[ANGULAR_VELOCITY], by[OF_OMEGA])
+    if scene.constraint.mechanism is Mechanism.PLANE:
+        _keep_contact(scene, start, vector)
     return vector
+
+
+def _keep_contact(scene, start, moved):
+    """Give a moved start the gap and the velocity of the lowest point that the start has.
+
+    A body that touches its plane, or rolls, would fall or slip else: a change of another kind,
+    which is in no proportion to the move.
+    """
+    gap, slip = np.zeros(3), np.zeros(3)
+    for sign, vector in (1.0, start), (-1.0, moved):
+        q, omega = vector[ORIENTATION].tolist(), vector[ANGULAR_VELOCITY].tolist()
+        arm = scene.constraint.touching(q, scene.body)
+        gap += sign * np.array(scaled(scene.constraint.height(q, scene.body),
+                                      scene.constraint.normal))
+        slip += sign * np.array(rotate(*q, *cross(omega, arm)))
+    moved[POSITION] += gap
+    moved[VELOCITY] += slip
 
 
 def _rounded(scene, omega, by):

@@ -11,7 +11,8 @@ import math
 
 from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.forecast import Forecast
-from rigid_body_sim.choice.trial import COARSER, NEAR, SATURATED, Trial
+from rigid_body_sim.choice.trial import SATURATED, Trial
+from rigid_body_sim.choice.trial_runs import COARSER, NEAR
 from rigid_body_sim.integrators.marching.contact_course import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.mechanics.contact.numbers import weight

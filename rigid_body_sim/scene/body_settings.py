@@ -5,12 +5,16 @@ A body is given by its tensor, by a shape, or by parts.
 """
 
 import dataclasses
+import functools
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene import bodies, composites, shapes
 from rigid_body_sim.scene.initial import unit_quaternion
 from rigid_body_sim.scene.schema import MATRIX, POSITIVE, QUATERNION, VECTOR, check, mapping_of
 from rigid_body_sim.scene.surfaces import SURFACE, surface_of, surface_of_shape
+from rigid_body_sim.scene.yaml_text import Written
+
+KEPT = 64    # bodies
 
 
 def _lengths(*names):
@@ -43,6 +47,13 @@ def body_of(mapping, where):
     BadInput
         For what the schema cannot say. `where` is file and key path.
     """
+    return _body(Written(mapping), where)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _body(written, where):
+    """Return the Body of settings; loops over effects and starts have the same one each time."""
+    mapping = written.value
     body = _inert_body(mapping, where)
     if 'surface' in mapping:
         return dataclasses.replace(body, surface=surface_of(mapping['surface'],

@@ -108,6 +108,21 @@ def parse(text, where):
     return copied(_parsed(text, where))
 
 
+class Written:
+    """A value as the key of a cache: values that are written alike are the same."""
+
+    __slots__ = 'text', 'value'
+
+    def __init__(self, value):
+        self.value, self.text = value, repr(value)
+
+    def __hash__(self):
+        return hash(self.text)
+
+    def __eq__(self, other):
+        return isinstance(other, Written) and self.text == other.text
+
+
 def copied(value):
     """Return a copy of a mapping, list or plain value that shares no mapping or list with it."""
     if isinstance(value, dict):

@@ -17,6 +17,8 @@ from rigid_body_sim.analysis.summary import lines, summary
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.recording.reader import Recording
 
+pytestmark = pytest.mark.without_numba
+
 DAMAGED = 3000 if SOAK else 40
 
 

@@ -14,6 +14,8 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 from rigid_body_sim.theory import billiard
 
+pytestmark = pytest.mark.without_numba
+
 
 def taken(scene, ticks, rate=1000.0, block=230):
     """Return (Motion, States) of a scene over some ticks, taken in blocks."""

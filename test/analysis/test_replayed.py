@@ -17,6 +17,8 @@ from rigid_body_sim.analysis.analyze import main as analyze
 from rigid_body_sim.analysis.resimulate import main
 from rigid_body_sim.recording.reader import Recording
 
+pytestmark = pytest.mark.without_numba
+
 LATER = 86_400_123_456_789      # ns
 ACTS = {50: [('cmd_impulse', (0.0, 0.0, 0.0), (0.1, 0.0, 0.2), 'body')],
         120: [('cmd_wrench', (0.1, 0.2, 0.3), (0.3, 2.0, 0.1), 'body')], 200: [('reset',)]}

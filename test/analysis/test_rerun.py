@@ -14,6 +14,8 @@ from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.command_rows import rows_of
 from rigid_body_sim.simulation.simulation import Simulation
 
+pytestmark = pytest.mark.without_numba
+
 SCENE, OTHER = load_scene('tennis_racket'), load_scene('heavy_top')
 START = 5_000_000_000
 ASKED = {'integrator': 'dop8', 'method': 'dop8', 'accuracy': 1e-9, 'tolerance': 1e-9,

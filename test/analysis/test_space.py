@@ -11,6 +11,8 @@ from rigid_body_sim.analysis.space import spaces, traced_axis
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
+pytestmark = pytest.mark.without_numba
+
 TENSOR = (Rotation.from_rotvec([0.3, -0.2, 0.7]).as_matrix() @ np.diag([1.0, 2.0, 2.5])
           @ Rotation.from_rotvec([0.3, -0.2, 0.7]).as_matrix().T)
 TENSOR = 0.5 * (TENSOR + TENSOR.T)

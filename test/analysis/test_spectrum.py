@@ -13,6 +13,8 @@ from rigid_body_sim.analysis.spectrum import Spectrum
 from rigid_body_sim.scene.scene import load_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
+pytestmark = pytest.mark.without_numba
+
 
 def spectrum_of(times, orientation, omega, scene=None, changes=()):
     segments = [Segment(stamp, scene, 0.0, 0.0) for stamp in (0, *changes)]

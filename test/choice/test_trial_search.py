@@ -8,7 +8,7 @@ import pytest
 from choice.known_bodies import SLOW, TORQUE, coasting_scene
 from near import near
 
-from rigid_body_sim.choice import comparison, runs, trial, trial_time
+from rigid_body_sim.choice import comparison, runs, trial, trial_runs, trial_time
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.scene.scene import parse_scene
@@ -100,7 +100,7 @@ def test_the_angle_of_a_trial_counts_what_a_drive_and_a_strike_add():
     ('taylor', 2.0 ** -30, 2.0 ** -20)])
 def test_tolerances_are_those_that_were_measured_of_the_method_or_else_of_dop8(
         method, finest, coarsest, monkeypatch):
-    monkeypatch.setattr(trial.measured, 'rows', lambda _: {
+    monkeypatch.setattr(trial_runs.measured, 'rows', lambda _: {
         'dop8': [{'tolerance': 2.0 ** -20}, {'tolerance': 2.0 ** -30}],
         'gauss16': [{'tolerance': 2.0 ** -25}, {'tolerance': 2.0 ** -35}]})
     one = Trial(parse_scene(SLOW.replace('EFFECTS', TORQUE)), 1e-9, 6.0, method, 1e-12, 1, True)
@@ -231,7 +231,7 @@ def test_a_trial_goes_on_to_the_horizon_where_heat_lets_the_body_turn_little(
         if fails and begun:
             raise TooMuchWork('too many steps')
     monkeypatch.setattr(tried, '_states', states)
-    monkeypatch.setattr(trial.forecast, 'turned_later', lambda *_: more)
+    monkeypatch.setattr(trial_runs.forecast, 'turned_later', lambda *_: more)
     monkeypatch.setattr(tried, '_begin', lambda *settings: begun.append(settings))
     tried._go_on(6.0, 4.0)
     assert begun == [(end, more * 4.0 if end == 600.0 else 4.0) for end in ends]
@@ -255,7 +255,7 @@ def test_another_method_may_do_better_where_rounding_does_not_excuse_an_error(
     monkeypatch.setattr(tried, '_reference', lambda _: HERE / 128.0)
     monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
     monkeypatch.setattr(tried, '_apart', lambda *_: 1e-10 * growing)
-    monkeypatch.setattr(trial.rounding, 'lost', rounded)
+    monkeypatch.setattr(trial_runs.rounding, 'lost', rounded)
     assert tried.excess(HERE, least) == 0.0    # it was not tried
     tried._runs = {HERE: at(0.0)}
     assert tried.excess(HERE, least) == expected
@@ -315,9 +315,9 @@ def test_a_run_begun_later_tells_where_it_is_more_than_four_times_as_far(
         asked.append(settings), shares * 1e-10 * growing)[1])
     monkeypatch.setattr(tried, '_lost_as_it_begins', lambda one: (
         asked.append(one), begins * 1e-10)[1])
-    monkeypatch.setattr(trial.rounding, 'lost', lambda scene, prototype, times, states: (
+    monkeypatch.setattr(trial_runs.rounding, 'lost', lambda scene, prototype, times, states: (
         asked.append(states[0, 7]), 1e-12 * growing)[1])
-    monkeypatch.setattr(trial.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
+    monkeypatch.setattr(trial_runs.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
     assert tried.forecast(HERE).error == near(told * 1e-10, rel=1e-12)
     where = finer or HERE
     assert asked == [where, (HERE, where), *[where] * (4.0 < shares < math.inf)]
@@ -362,7 +362,7 @@ def test_slim_are_moments_that_differ_more_than_tenfold(moments, slim):
     (TORQUE, False), ('gravity: {g: 9.81}', True), ('', False),
     (f'{TORQUE}, force: {{value: [1, 0, 0]}}', True)])
 def test_only_forces_make_a_body_fly(effects, flies):
-    assert trial._flies(parse_scene(SLOW.replace('EFFECTS', effects))) == flies
+    assert trial_runs._flies(parse_scene(SLOW.replace('EFFECTS', effects))) == flies
 
 
 @pytest.mark.parametrize(('error', 'misses'), [
@@ -485,10 +485,10 @@ def test_the_larger_of_error_and_rounding_is_told(error, lost, longer, told, aro
     monkeypatch.setattr(tried, '_errors', lambda *_: error * np.ones(runs.LOOKS))
     monkeypatch.setattr(tried, '_around', lambda *_: asked.append(None) or 'finer')
     monkeypatch.setattr(tried, '_beside_one_begun_later', lambda *_: np.zeros(runs.LOOKS))
-    monkeypatch.setattr(trial.rounding, 'lost', lambda *_: lost * growing)
-    monkeypatch.setattr(trial.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
+    monkeypatch.setattr(trial_runs.rounding, 'lost', lambda *_: lost * growing)
+    monkeypatch.setattr(trial_runs.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
     monkeypatch.setattr(
-        trial.comparison, 'apart_from_mean', lambda *_: 0.5 * error * growing[::-1])
+        trial_runs.comparison, 'apart_from_mean', lambda *_: 0.5 * error * growing[::-1])
     found = tried.forecast(HERE)
     assert found.error == near(told, rel=1e-12)
     assert bool(asked) == around
@@ -500,9 +500,9 @@ def test_where_rounding_is_small_the_angle_turned_tells_what_the_start_does(trie
     monkeypatch.setattr(tried, '_below', lambda *_: HERE / 128.0)
     monkeypatch.setattr(tried, '_states', lambda _: at(0.0))
     monkeypatch.setattr(tried, '_errors', lambda *_: 1e-9 * np.ones(runs.LOOKS))
-    monkeypatch.setattr(trial.rounding, 'lost', lambda *_: 1e-15 * np.ones(runs.LOOKS))
+    monkeypatch.setattr(trial_runs.rounding, 'lost', lambda *_: 1e-15 * np.ones(runs.LOOKS))
     monkeypatch.setattr(
-        trial.rounding, 'of_angle_turned', lambda *_: 5e-9 * np.ones(runs.LOOKS))
+        trial_runs.rounding, 'of_angle_turned', lambda *_: 5e-9 * np.ones(runs.LOOKS))
     assert tried.forecast(HERE).error == near(15e-9, rel=1e-12)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.choice import runs, trial, trial_time
+from rigid_body_sim.choice import runs, trial_runs, trial_time
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.choice.trial_on_plane import TrialOnPlane
 from rigid_body_sim.integrators.marching.work import TooMuchWork
@@ -87,7 +87,7 @@ def test_where_a_run_takes_too_much_work_the_trial_is_a_part_of_what_it_reached(
 @pytest.mark.parametrize('able', [0.0, 5e-324])
 def test_where_no_part_can_be_run_the_search_tells(able, monkeypatch):
     tried, made = cut_short(monkeypatch, able)
-    assert len(made) <= trial.CUTS
+    assert len(made) <= trial_runs.CUTS
     assert tried._radians == 0.0
 
 

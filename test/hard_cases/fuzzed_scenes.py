@@ -20,7 +20,7 @@ import warnings
 
 import numpy as np
 
-from rigid_body_sim.choice import rounding, runs, trial, trial_time
+from rigid_body_sim.choice import rounding, runs, trial_runs, trial_time
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.families import scipy_methods
 from rigid_body_sim.integrators.marching import contact_course, switched, work
@@ -419,7 +419,8 @@ def main(first, end):
     work.FIRST_LOOK, work.MOST, work.PATIENCE, contact_course.EVENT = 16, 50.0, 1e4, 4
     switched.DEAR = scipy_methods.COST = work.SLOWER = 1
     quadrature.MOST, quadrature.EVENLY = 2 ** 10, 2 ** 4
-    trial.STEPS, trial.STEPS_PER_RADIAN, trial.FEW, events.LOOKS_A_TICK = 20, 5, 2, 20
+    trial_runs.STEPS, trial_runs.STEPS_PER_RADIAN, trial_runs.FEW = 20, 5, 2
+    events.LOOKS_A_TICK = 20
     trial_time.RADIANS = 0.5
     rounding.SIGNS, rounding.MOVED, runs.LOOKS = rounding.SIGNS[:1], rounding.MOVED[:1], 3
     signal.signal(signal.SIGVTALRM, alarm)

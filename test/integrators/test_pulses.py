@@ -68,7 +68,7 @@ def test_the_ledger_does_not_follow_the_rounding_of_a_soft_switch():
         assert simulation._spans[-1].solver._quadrature._count < 100    # measured: 14
 
 
-@pytest.mark.parametrize('rate', [0.0, 1.0])
+@pytest.mark.parametrize('rate', [pytest.param(0.0, marks=IN_SOAK), 1.0])
 def test_the_ledger_sees_a_pulse(rate):
     """Before it begins, a ten-thousandth of an ulp of what comes is no reason for short panels."""
     simulation = Simulation(driven('exp(-((t - 5)/0.01)^2)', rate), 'dop8', accuracy=1e-9,

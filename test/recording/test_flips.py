@@ -19,7 +19,7 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as TheirWriter
 from recording.conftest import write
-from soak import SOAK
+from soak import SOAK, some_of
 
 from rigid_body_sim.cli.simulate import main as simulate
 from rigid_body_sim.errors import BadInput
@@ -118,8 +118,7 @@ RECORDINGS = {
 }
 
 
-@pytest.mark.parametrize('name', list(RECORDINGS))
-@pytest.mark.parametrize('cut', [False, True], ids=['whole', 'without its tail'])
+@pytest.mark.parametrize(('name', 'cut'), some_of(list(RECORDINGS), [False, True]))
 def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name, cut):
     content = RECORDINGS[name](tmp_path).read_bytes()
     truth = messages_of(content, records=False)
@@ -165,9 +164,8 @@ def test_a_wrong_byte_costs_no_message_that_the_library_can_read(tmp_path, name,
 WRONG = b'\0', b'\xff', b'7'
 
 
-@pytest.mark.parametrize('size', [4, 8])
-@pytest.mark.parametrize('statistics', [True, False])
-@pytest.mark.parametrize('compression', list(CompressionType))
+@pytest.mark.parametrize(('compression', 'statistics', 'size'), some_of(
+    list(CompressionType), [True, False], [4, 8]))
 def test_wrong_bytes_over_the_header_and_the_first_chunk_cost_no_message(
         tmp_path, compression, statistics, size):
     path = by_the_library(tmp_path / 'x.mcap', compression=compression,

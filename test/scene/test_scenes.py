@@ -16,7 +16,13 @@ from rigid_body_sim.cli.scenes import describe
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.effects.drag import Drag
 from rigid_body_sim.scene.effects.torque import Torque
-from rigid_body_sim.scene.scene import load_scene, parse_scene, scene_folder, scene_names
+from rigid_body_sim.scene.scene import (
+    changed_scene,
+    load_scene,
+    parse_scene,
+    scene_folder,
+    scene_names,
+)
 
 RACKET = pathlib.Path(scene_folder(), 'tennis_racket.yaml').read_text()
 
@@ -275,3 +281,11 @@ def test_what_acts_is_all_of_some_classes(effects, classes, only):
     scene = parse_scene('scene: a\nbody: {mass: 1, inertia: [1, 2, 2]}\nconstraint: free\n'
                         f'effects: {effects}\ninitial: {{}}\n')
     assert scene.acts_only(*classes) is only
+
+
+def test_a_change_elsewhere_leaves_the_very_body():
+    scene = changed_scene(load_scene('kater_pendulum'), {'gravity.g': 9.7})
+    changed = changed_scene(scene, {'gravity.g': 1.62})
+    assert changed.body is scene.body
+    assert changed.effects != scene.effects
+    assert changed_scene(scene, {'body.mass': 3.0}).body.mass == 3.0

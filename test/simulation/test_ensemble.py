@@ -359,6 +359,7 @@ def test_bodies_that_magnify_errors_are_told_by_their_expected_errors():
     assert few.expected_errors().tolist() == told.tolist()
 
 
+@pytest.mark.without_numba
 def test_errors_of_steps_that_the_start_limits_are_told():
     """Bodies that turn by up to 1 rad take the same steps to 8e-6 and to a finer tolerance.
 

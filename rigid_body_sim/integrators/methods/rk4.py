@@ -20,4 +20,6 @@ TAKES = ('step',)
 SOURCE = 'W. Kutta, Z. Math. Phys. 46 (1901) 435'
 
 A = ({}, {0: 0.5}, {1: 0.5}, {2: 1.0})
-B = {0: 1.0 / 6.0, 1: 1.0 / 3.0, 2: 1.0 / 3.0, 3: 1.0 / 6.0}
+_SIXTH, _THIRD = 1.0 / 6.0, 1.0 / 3.0
+# the second 1/3 is rounded up: the sum is 1
+B = {0: _SIXTH, 1: _THIRD, 2: 1.0 - (_SIXTH + _THIRD + _SIXTH), 3: _SIXTH}

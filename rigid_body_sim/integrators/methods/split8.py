@@ -36,4 +36,6 @@ _W = (
     0.31495668391629485789,
 )
 DRIFTS = (*_W, 1.0 - 2.0 * math.fsum(_W), *_W[::-1])
-KICKS = (0.5 * _W[0], *(0.5 * (first + second) for first, second in pairwise(DRIFTS)), 0.5 * _W[0])
+_K = (0.5 * _W[0], *(0.5 * (first + second) for first, second in pairwise(_W)))
+_K9 = math.fsum((0.5, *(-kick for kick in _K)))    # all are 1 together, without rounding
+KICKS = (*_K, _K9, _K9, *_K[::-1])

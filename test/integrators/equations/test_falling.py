@@ -13,6 +13,8 @@ from rigid_body_sim.integrators.equations.falling import SMALL, fallen, phi
 from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.scene import parse_scene
 
+pytestmark = pytest.mark.without_numba
+
 EPS = 2.0 ** -53
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from near import near
+from soak import IN_SOAK
 
 from rigid_body_sim.integrators.equations.relaxation import relaxations, stiff_relaxations
 from rigid_body_sim.mechanics.bounds import drive, swing_rate
@@ -129,7 +130,7 @@ def test_a_matrix_is_as_fast_as_its_largest_eigenvalue(k, stiff):
     assert bool(stiff_relaxations(scene, 7)) is stiff
 
 
-@pytest.mark.parametrize('square', [2.0e5, 1.0e6])
+@pytest.mark.parametrize('square', [2.0e5, pytest.param(1.0e6, marks=IN_SOAK)])
 def test_a_wheel_in_tar_turns_by_the_angle_of_its_closed_form(square):
     r"""I omega' = -(k + q omega) omega, so phi = (I/q) ln(1 + (q omega_0/k)(1 - exp(-k t/I)))."""
     scene = scene_of(f'angular: 1.0e6, angular_quadratic: {square}', HINGE, '{rate: 3.0}')

@@ -11,6 +11,7 @@ import math
 import numpy as np
 import pytest
 from near import near
+from soak import SOAK
 
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.equations.contact_views import (
@@ -648,7 +649,8 @@ def test_a_state_within_a_step_is_there_where_its_stages_do_not_settle():
                         'surface: {sphere: {radius: 0.03}}}\n'
                         f'effects: [gravity: {{g: 9.81}}, sliding_friction: {{mu: {mu}}}]\n'
                         'initial: {velocity: [1, 0, 0]}\n')
-    times = np.array([10.0, 330.0, 460.0, 500.0])    # the last three were left out
+    # the last three were left out
+    times = np.array([10.0, 330.0, 460.0, 500.0] if SOAK else [10.0, 330.0])
     found = Simulation(scene, 'gauss16', accuracy=1e-9, horizon=1000.0).states(times)
     place = times - 0.5 * mu * 9.81 * times * times
     assert np.abs(found.position[:, 0] - place).max() < 1e-10    # measured: 1.3e-12

@@ -2,9 +2,9 @@
 """The methods beside dop8: documented, of the order they say, and what each keeps or refuses."""
 
 import json
-import math
 import pathlib
 import types
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -68,7 +68,8 @@ def test_every_method_is_documented(name):
 
 @pytest.mark.parametrize('order', range(1, 5))
 def test_order_conditions_of_rk4(order):
-    assert largest_defect(order, rk4.A, rk4.B) < 1e-16
+    # measured: 0 to order 2, then 9e-18
+    assert largest_defect(order, rk4.A, rk4.B) < (1e-20 if order <= 2 else 2e-17)
 
 
 @pytest.mark.parametrize('name', SPLITS)
@@ -77,8 +78,9 @@ def test_compositions_are_symmetric_and_make_a_whole_step(name):
     assert method.DRIFTS[::-1] == method.DRIFTS
     assert method.KICKS[::-1] == method.KICKS
     assert len(method.KICKS) == len(method.DRIFTS) + 1
-    assert abs(math.fsum(method.DRIFTS) - 1.0) < 3e-16
-    assert abs(math.fsum(method.KICKS) - 1.0) < 3e-16
+    # what they lack would turn the body by as much in each radian; measured: 5.2e-18 of split6
+    for parts in method.DRIFTS, method.KICKS:
+        assert abs(sum(map(Fraction, parts)) - 1) < 6e-18
 
 
 @pytest.mark.parametrize('name', ['rk4', *SPLITS, 'semi_implicit_euler'])

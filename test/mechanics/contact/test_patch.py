@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from near import near
+from soak import SOAK
 
 from rigid_body_sim.mechanics.contact.laws import System
 from rigid_body_sim.mechanics.contact.patch import (
@@ -137,12 +138,12 @@ def test_a_search_from_everywhere_finds_no_slip_of_a_patch_that_is_missed(rollin
     z = 1.0 - 2.0 * (np.arange(400) + 0.5) / 400
     angle, level = math.pi * (1.0 + math.sqrt(5.0)) * np.arange(400), np.sqrt(1.0 - z * z)
     starts = np.stack([level * np.cos(angle), level * np.sin(angle), z], axis=1)
-    have = 0
-    for patch, mu, guess in slipping_patches(2, 60, rolling):
+    have, count = 0, 60 if SOAK else 20
+    for patch, mu, guess in slipping_patches(2, count, rolling):
         if grown_from_everywhere(patch, mu, starts) > 0.0:
             have += 1
             assert leaves(patch, mu, *patch_departure(patch, mu, guess))
-    assert have > 45
+    assert have > 0.75 * count    # 57 and 49 of 60; 19 and 17 of 20
 
 
 @pytest.mark.parametrize('guess', [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, -0.6, -0.8)])
