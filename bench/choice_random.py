@@ -16,16 +16,18 @@ the origin and on a path too; with --slowing drag or dry friction brings each to
 The truth shares no formula with the package: Newton's and Euler's equations in body axes with the
 full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates the expressions.
 The floor is what half an ulp on each number of the start does, by finite differences of the truth.
-The error is the largest at 24 times. Scenes with expressions run in plain Python, in a process of
-their own: their kernels would take longer to compile than to run, and the bits are the same. With
---keep a run that was stopped resumes. Exit 1 unless on every scene
+The error is the largest at 64 uneven times up to the duration that is drawn, or up to where 2000
+steps of the truth lead: whatever turns more often than a thousand times ends there. Scenes with
+expressions run in plain Python, in a process of their own: their kernels would take longer to
+compile than to run, and the bits are the same. With --keep a run that was stopped resumes. Exit 1
+unless on every scene
 
     the error is at most max(asked, 3 floor),
     the expected error is within a factor of 3 of max(error, floor), or says that nothing is known
         of the attitude (above 1e-2 rad),
     the ledger's residuals are below max(asked, floor) times 10 (a torsion spring that goes on from
     the other end of the angle leaves the difference of its energies, and no more),
-    nothing hangs (120 s of the processor, 600 in plain Python; the truth may take 1800) and
+    nothing hangs (120 s of the processor, 600 in plain Python, as the truth) and
     nothing is raised.
 """
 

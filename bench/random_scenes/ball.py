@@ -12,7 +12,7 @@ from random_scenes.wide import WIDE, cross, rotated
 class BallTruth:
     """A ball that slides, then rolls: v and omega are linear in time, q by extrapolation."""
 
-    jumped = turned = 0.0    # as Truth has them
+    jumped, turned, moved = 0.0, 0.0, MOVED    # as Truth has them
 
     def __init__(self, scene, settings, *_):
         one, self.radius = dict(settings)['sliding_friction'], WIDE(scene.body.radius)

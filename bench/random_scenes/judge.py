@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `auto` promises on one random scene, beside the truth."""
 
+import math
 import signal
 
 import numpy as np
@@ -11,7 +12,7 @@ from random_scenes.draw import drawn
 from random_scenes.kinks import WORDS, Kinked
 from random_scenes.looks import looks
 from random_scenes.new_language import MOTIONS
-from random_scenes.truth import HALF_ULP, Truth
+from random_scenes.truth import HALF_ULP, MOVED, TooMuchWork, Truth
 from random_scenes.wide import WIDE, angle
 from rigid_body_sim.compilation.environment import HAVE_NUMBA
 from rigid_body_sim.scene.scene import parse_scene
@@ -22,18 +23,21 @@ LOOKS = 64               # as often as a trial of `auto`: dense output errs betw
 STOPPED = 0.5            # share of its largest rate below which a body has lost what it gained
 LONGEST = 120            # s of the processor, a scene with its compilation
 LONGEST_IN_PYTHON = 600  # without compilation
-LONGEST_TRUTH = 1800     # the truth of a scene
+LONGEST_TRUTH = 600      # the truth of a scene
+STEPS = 2000             # of the truth, in all copies: what they do not reach is left out
+ENOUGH = 16              # looks that were reached; of fewer, the horizon is drawn nearer
+LESS = 2.0 ** 11, 2.0 ** 3    # half ulps by which a start is moved that is magnified: to 12 mrad
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 
 
-def truth_of(scene):
-    """Return what follows a scene with 64-bit mantissas, at its start."""
+def truth_of(scene, most=math.inf, moved=MOVED):
+    """Return what follows a scene with 64-bit mantissas, at its start, by `most` steps."""
     read = yaml.safe_load(scene.text)
     settings = [next(iter(one.items())) for one in read['effects']]
     kinked = any(word in scene.text for word in WORDS) or getattr(scene.constraint, 'winds', False)
     follow = BallTruth if scene.constraint.kind == 'table' else Kinked if kinked else Truth
     motion = next((one for one in MOTIONS if str(list(one[0])) == str(_motion(read))), None)
-    return follow(scene, settings, read.get('parameters', {}), motion)
+    return follow(scene, settings, read.get('parameters', {}), motion, most, moved)
 
 
 def _motion(read):
@@ -44,19 +48,39 @@ def _motion(read):
 
 
 def known(scene, duration):
-    """Return LOOKS times, attitudes there, the largest floor (rad), and Truth.jumped (J)."""
-    truth = truth_of(scene)
-    first, fastest = truth.rate, 0.0
-    times, attitudes, floors = looks(duration, LOOKS), [], []
+    """Return times, attitudes there, the largest floor (rad), and Truth.jumped (J).
+
+    There are LOOKS times up to the duration, or up to where STEPS steps of the truth lead: a slim
+    body may turn a million times, and what goes wrong in that shows in a thousand.
+    """
+    while True:
+        times, attitudes, floors, jumped = _followed(scene, looks(duration, LOOKS), STEPS)
+        if len(times) >= ENOUGH:
+            break
+        duration = float(times[-1]) if len(times) else duration / LOOKS
+    for moved in LESS:
+        if max(floors) == math.inf:
+            floors = _followed(scene, times, math.inf, moved)[2]
+    return times, attitudes, max(floors), jumped
+
+
+def _followed(scene, times, most, moved=MOVED):
+    """Return what `known` returns, with all floors and the times that so many steps reach."""
+    truth = truth_of(scene, most, moved)
+    first, fastest, attitudes, floors = truth.rate, 0.0, [], []
+    jumped = float(truth.jumped)
     for end in times:
-        truth.to(float(end))
+        try:
+            truth.to(float(end))
+        except TooMuchWork:
+            break
         attitudes.append(truth.y[0, :4].astype(WIDE))
-        fastest = max(fastest, truth.rate)
+        fastest, jumped = max(fastest, truth.rate), float(truth.jumped)
         # a rate that the body has gained and keeps counts from the start on
         slow = truth.rate < max(first, STOPPED * fastest)
         turned = truth.turned if slow else fastest * float(end)
         floors.append(max(truth.floor(), HALF_ULP * (4.0 + turned)))
-    return times, attitudes, max(floors), float(truth.jumped)
+    return times[:len(floors)], attitudes, floors, jumped
 
 
 def tried(number, seed, draw=drawn):
@@ -65,6 +89,7 @@ def tried(number, seed, draw=drawn):
     scene = parse_scene(text)
     _within(LONGEST_TRUTH, 'the truth')
     times, attitudes, floor, jumped = known(scene, duration)
+    duration = float(times[-1])
     _within(LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON, 'the scene')
     what = ' '.join([scene.constraint.kind, *(effect.name for effect in scene.effects)])
     for accuracy in ACCURACIES:
@@ -100,11 +125,14 @@ def _unbalanced(simulation, jumped):
 
 
 def _within(seconds, what):
-    """Raise TimeoutError if what begins takes more than so many seconds of the processor."""
+    """Raise TimeoutError if what begins takes more than so many seconds of the processor.
+
+    It is raised once a second from then on: whoever swallows it does not go on for ever.
+    """
     def late(*_):
         raise TimeoutError(f'{what} takes more than {seconds} s')
     signal.signal(signal.SIGVTALRM, late)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, 1.0)
 
 
 def judged(number, seed, draw=drawn):

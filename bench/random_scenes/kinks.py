@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from random_scenes.laws import Laws
-from random_scenes.truth import TOLERANCE, Truth
+from random_scenes.truth import MOVED, TOLERANCE, Truth
 from random_scenes.wide import WIDE
 
 SHARE = 0.3              # rad, of a step
@@ -22,8 +22,9 @@ class Kinked:
 
     floor = Truth.floor
 
-    def __init__(self, scene, settings, parameters, motion=None):
-        base = Truth(scene, settings, parameters, motion)
+    def __init__(self, scene, settings, parameters, motion=None, most=math.inf, moved=MOVED):
+        base = Truth(scene, settings, parameters, motion, most, moved)
+        self.moved = moved
         self._copies = [_Copy(base, row, parameters) for row in range(len(base.y))]
 
     def to(self, time):

@@ -13,24 +13,43 @@ from random_scenes.laws import Laws
 from random_scenes.wide import WIDE, angle, back, cross, inverse, rotated, times
 
 HALF_ULP, MOVED = 2.0 ** -53, 2.0 ** 22
-LINEAR = 0.1             # rad
+LINEAR = 0.1             # rad: what is moved farther apart is no longer in proportion
 LEVELS = 7               # levels of the extrapolation: nine magnify rounding ten times as much
 TOLERANCE = 1e-18        # of a step, relative
 WAITS = 8                # steps after one that was too long before a longer one is tried
+
+
+class TooMuchWork(Exception):
+    """The truth needs more steps than it may take."""
+
+
+class Steps:
+    """The steps that a truth may still take; all copies of a start share them."""
+
+    def __init__(self, most=math.inf):
+        self.left = most
+
+    def take(self):
+        """Take one, or raise TooMuchWork."""
+        self.left -= 1
+        if self.left < 0:
+            raise TooMuchWork
 
 
 class Truth:
     """Copies of a scene's body, moved on by extrapolation of the modified midpoint rule.
 
     Unknowns: q (4), omega (3, body), velocity and place of the centre of mass (3 and 3, world).
+    The start is moved by `moved` half ulps, for the floor.
     `jumped` (J) is the energy that torsion springs got without work, from one end of the angle of
     a hinge to the other; `turned` (rad) is the angle turned so far.
     """
 
     jumped, turned = WIDE(0), 0.0
 
-    def __init__(self, scene, settings, parameters, motion=None):
+    def __init__(self, scene, settings, parameters, motion=None, most=math.inf, moved=MOVED):
         body, kind = scene.body, scene.constraint.kind
+        self.steps, self.moved = Steps(most), moved
         self.kind, self.effects = kind, settings
         self.mass = WIDE(body.mass)
         tensor = np.array(body.about_center.matrix, dtype=float).astype(WIDE)
@@ -45,13 +64,13 @@ class Truth:
                 continue
             if kind == 'hinge' and place > 4:
                 continue
-            moved = start.copy()
-            by = WIDE(HALF_ULP * MOVED)
+            other = start.copy()
+            by = WIDE(HALF_ULP * moved)
             if kind == 'hinge' and place == 4:
-                moved[4:7] *= 1 + by
+                other[4:7] *= 1 + by
             else:
-                moved[place] += by * size
-            copies.append(moved)
+                other[place] += by * size
+            copies.append(other)
         self.y, tensors = np.array(copies), tensor[None]
         self.y[:, :4] /= np.sqrt((self.y[:, :4] ** 2).sum(1))[:, None]
         self.arm = np.zeros(3, dtype=WIDE)
@@ -154,6 +173,7 @@ class Truth:
         All levels of the extrapolation go side by side, the one with most steps first. They follow
         the changes of y: extrapolation magnifies the rounding of what it is given a hundred times.
         """
+        self.steps.take()
         size, count = len(y), 2 * np.arange(LEVELS, 0, -1)
         s = np.repeat(h / count.astype(WIDE), size)[:, None]
         start, before = np.tile(y, (LEVELS, 1)), np.zeros((LEVELS * size, y.shape[1]), dtype=WIDE)
@@ -197,9 +217,9 @@ class Truth:
         """Return what half an ulp on the numbers of the start does, rad."""
         best = self.y[0, :4]
         apart = [angle(best, other[:4]) for other in self.y[1:]]
-        if max(apart) > LINEAR:    # no longer in proportion to the change
+        if max(apart) > LINEAR:
             return math.inf
-        return math.sqrt(math.fsum(x * x for x in apart)) / MOVED
+        return math.sqrt(math.fsum(x * x for x in apart)) / self.moved
 
 
 def _wide(vector):

@@ -9,6 +9,7 @@ with G the derivative of the attitude by the start, and D half an ulp of each of
 which is estimated by finite differences along a few orthogonal rows of signs.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -160,29 +161,36 @@ def of_bodies(scene, many, starts, time):
     return found
 
 
-def conditioning(scene, prototype, times, states, enough=math.inf):
+def conditioning(scene, prototype, times, states, enough=math.inf, start=None):
     """Return the change of the attitude by half an ulp on each number of the start, rad, (n,).
 
     Parameters
     ----------
     states : array (n, 14)
-        The run from the scene's own start.
+        The run from the start.
     enough : float, optional
         rad. It is given where the only question is whether the change reaches it. The start is
         then moved by half an ulp alone, and no more often than it takes to see that. A change that
         is no longer proportional to its cause counts as having reached it. One that a far larger
         move leaves as it is comes of other steps, whose errors it shows, and counts as none.
+    start : array (14,), optional
+        A state of the scene, whose strikes are over up to its time; else the scene's own start.
     """
-    start, found = scene.initial.vector, np.full(len(times), math.inf)
+    again = run
+    if start is None:
+        start = scene.initial.vector
+    else:
+        again = functools.partial(run, over=float(start[TIME]))
+    found = np.full(len(times), math.inf)
     least = min(enough, LINEAR) if enough < math.inf else math.inf
     for many in MOVED if enough == math.inf else MOVED[-1:]:
         squares = np.zeros(len(times))
         for signs in SIGNS:
-            moved = run(scene, prototype, _moved(scene, start, signs, many), times)
+            moved = again(scene, prototype, _moved(scene, start, signs, many), times)
             change = apart(moved, states)
             squares += np.square(change)
             if squares.max() >= len(SIGNS) * least * least:
-                moved = run(scene, prototype, _moved(scene, start, signs, FAR), times)
+                moved = again(scene, prototype, _moved(scene, start, signs, FAR), times)
                 far = float(apart(moved, states).max())
                 if far < min(LINEAR, FARTHER * float(change.max())):
                     return np.zeros(len(times))

@@ -42,8 +42,9 @@ class Foretelling(TrialRuns):
                 around = self._around(below, tolerance) if below else None
                 errors = comparison.apart_from_mean(here, around) if around else errors
                 begun = self._beside_one_begun_later(tolerance, below or tolerance)
-                told = max(float(errors.max()), float(lost.max()))
-                if SHARED * told < float(begun.max()) < math.inf:    # one that fails tells nothing
+                told, apart = max(float(errors.max()), float(lost.max())), float(begun.max())
+                if SHARED * told < apart < math.inf and (    # one that fails tells nothing
+                        SHARED * self._lost_as_it_begins(below or tolerance) < apart):
                     errors, beside = begun, None
         else:
             lost = np.zeros(len(times))

@@ -20,7 +20,7 @@ from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.bounds import drives, pushed_unbounded
-from rigid_body_sim.scene.state import VELOCITY
+from rigid_body_sim.scene.state import TIME, VELOCITY
 
 STEPS, STEPS_PER_RADIAN = 5000, 20    # most of a trial run: three times what the finest takes
 SETTLING = 2 ** 16    # steps of a coarse run to the horizon that shows whether a body settles
@@ -252,6 +252,19 @@ class TrialRuns:
                              self._states(finer)[0], self._times, over=float(self._times[0]))
             return comparison.apart(here, begun)
         return np.zeros(len(here))
+
+    def _lost_as_it_begins(self, tolerance):
+        """Return what half an ulp on each number of the first look does to a run, rad.
+
+        That look may have been rounded to more than the start: a slim body that has gained speed
+        spins about its thin axis at a small difference of large numbers.
+        """
+        prototype, start = self.prototype.at(tolerance, self._most), self._states(tolerance)[0]
+        with contextlib.suppress(TooMuchWork):
+            begun = runs.run(self._scene, prototype, start, self._times, over=float(start[TIME]))
+            return float(rounding.conditioning(
+                self._scene, prototype, self._times, begun, start=start).max())
+        return 0.0
 
     def _apart(self, tolerance, finer):
         """Return what counts as error (rad) of a run beside a finer one, shape (LOOKS,)."""

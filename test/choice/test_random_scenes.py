@@ -205,6 +205,37 @@ def test_the_truth_meets_a_kink_twice_within_a_step(judge):
 
 
 @pytest.mark.without_numba
+@pytest.mark.parametrize(('duration', 'reached', 'count'), [
+    (30.0, 30.0, 64), (120.0, 35.03, 19), (1e5, 28.97, 46)])
+def test_a_truth_goes_as_far_as_its_steps_lead(judge, monkeypatch, duration, reached, count):
+    """A rate of 1 rad/s takes a step for each radian: all of the first horizon, some of others."""
+    monkeypatch.setattr(judge, 'STEPS', 100)
+    scene = judge.parse_scene("""
+        {scene: turns, body: {mass: 1, inertia: [0.1, 0.1, 0.1]}, constraint: free, effects: [],
+         initial: {angular_velocity: [0, 0, 1]}}""")
+    times, attitudes, floor, _ = judge.known(scene, duration)
+    assert len(times) == len(attitudes) == count >= judge.ENOUGH
+    assert times[-1] == near(reached, rel=1e-3)
+    half = judge.WIDE(1) * times / 2
+    turned = np.stack([0 * half, 0 * half, np.sin(half), np.cos(half)], axis=1)
+    assert max(map(judge.angle, attitudes, turned)) < 1e-15    # measured: 3e-17
+    assert 1e-15 < floor < 1e-14    # measured: 4e-15
+
+
+# more than 2.4e-8 rad counted as infinite, and then nothing was judged
+@pytest.mark.without_numba
+@pytest.mark.parametrize('grows', [1e7, 1e9, 1e12])
+def test_a_start_that_is_magnified_has_a_floor(judge, grows):
+    """A pendulum falls from its highest point: what moves it by an angle grows as cosh(w t)."""
+    scene = judge.parse_scene("""
+        {scene: falls, body: {mass: 1, inertia: [1, 1, 1], center_of_mass: [0, 0, -1]},
+         constraint: {hinge: {axis: [1, 0, 0]}}, effects: [gravity: {g: 2}],
+         initial: {angle: 3.141592653589793}}""")
+    _, _, floor, _ = judge.known(scene, float(np.arccosh(grows)))
+    assert floor == near(2 * judge.HALF_ULP * grows, rel=1e-3)
+
+
+@pytest.mark.without_numba
 @IN_SOAK    # a quarter of a minute of plain Python
 def test_a_run_that_carries_what_its_sums_lose_loses_no_half_ulps_on_its_way(judge):
     """A pendulum from nearly rest: 2e-11 was told; the floor is 3.7e-12, the error 2.2e-12."""

@@ -295,11 +295,15 @@ def test_a_run_that_begins_later_has_the_first_state_of_a_finer_one(tried, monke
     assert tried._beside_one_begun_later(HERE, HERE / 4.0).tolist() == [0.0] * runs.LOOKS
 
 
-@pytest.mark.parametrize(('shares', 'told'), [(3.9, 1.0), (4.1, 4.1), (math.inf, 1.0)])
+@pytest.mark.parametrize(('shares', 'begins', 'told'), [
+    (3.9, 0.0, 1.0), (4.1, 0.0, 4.1), (math.inf, 0.0, 1.0), (8.0, 1.9, 8.0), (8.0, 2.1, 1.0)])
 @pytest.mark.parametrize('finer', [None, HERE / 128.0])
 def test_a_run_begun_later_tells_where_it_is_more_than_four_times_as_far(
-        shares, told, finer, tried, monkeypatch):
-    """Finer runs may share its rounding. What rounding does is asked of the finest run."""
+        shares, begins, told, finer, tried, monkeypatch):
+    """Finer runs may share its rounding. What rounding does is asked of the finest run.
+
+    It is more than four times what the rounding of its own start does, too.
+    """
     tried._scene, tried._longer, asked = coasting_scene(), 1.0, []
     growing = np.linspace(0.5, 1.0, runs.LOOKS)
     monkeypatch.setattr(tried, '_reference', lambda _: finer)
@@ -309,11 +313,14 @@ def test_a_run_begun_later_tells_where_it_is_more_than_four_times_as_far(
     monkeypatch.setattr(tried, '_around', lambda *_: [])
     monkeypatch.setattr(tried, '_beside_one_begun_later', lambda *settings: (
         asked.append(settings), shares * 1e-10 * growing)[1])
+    monkeypatch.setattr(tried, '_lost_as_it_begins', lambda one: (
+        asked.append(one), begins * 1e-10)[1])
     monkeypatch.setattr(trial_runs.rounding, 'lost', lambda scene, prototype, times, states: (
         asked.append(states[0, 7]), 1e-12 * growing)[1])
     monkeypatch.setattr(trial_runs.rounding, 'of_angle_turned', lambda *_: np.zeros(runs.LOOKS))
     assert tried.forecast(HERE).error == near(told * 1e-10, rel=1e-12)
-    assert asked == [finer or HERE, (HERE, finer or HERE)]
+    where = finer or HERE
+    assert asked == [where, (HERE, where), *[where] * (4.0 < shares < math.inf)]
 
 
 @pytest.mark.parametrize('ran', [False, True])
