@@ -61,11 +61,12 @@ package: .venv/test.stamp ## colcon build, and colcon test of what was installed
 mutants: .venv/test.stamp ## COUNT (100) random changes of the code, drawn by SEED (1): at least 95 % are found by a test
 	.venv/bin/python test/mutants.py --seed $(SEED) --count $(COUNT)
 
-soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 300 random scenes and 100 on a plane beside a truth; millions of arguments of each function; mutants
+soak: .venv/test.stamp .cache/mcap_core/stamp ## what takes long: 1000 cut files, 13,000 damaged ones, @mcap/core; 1e8 ticks, 100,000 scene files, two hours of the node; 600 random scenes and 100 on a plane beside a truth; millions of arguments of each function; mutants
 	RIGID_BODY_SIM_SOAK=1 .venv/bin/python -m pytest --numprocesses 2 --timeout 7200 \
 	    test/recording test/analysis test/hard_cases test/study test/node test/test_digests.py test/test_docs.py \
 	    test/compilation test/mechanics test/numerics test/integrators test/motions test/scene test/choice test/simulation test/view test/sweeps test/theory test/test_extending.py
 	.venv/bin/python bench/choice_random.py --count 300
+	.venv/bin/python bench/choice_random.py --new --count 100
 	.venv/bin/python bench/choice_random.py --slowing --count 100
 	.venv/bin/python bench/choice_random.py --let-go --count 100
 	.venv/bin/python bench/plane_random.py --count 100

@@ -7,9 +7,10 @@ every analytic function do in the end, the rule errs by about c_32, which the la
 
     a = max(|c_14|, |c_15|),    b = max(|c_12|, |c_13|),    error = a (a/b)^8
 
-The value at the beginning of a panel must also fit the polynomial through the nodes: a part that
-ends before the first node would not be seen otherwise. A panel with too large an error is halved.
-Source of the rule: NIST DLMF 3.5(v).
+The values at the beginning of a panel and just before its end must also fit the polynomial
+through the nodes, as well as its last terms let expect: a part that ends before the first node,
+and a kink beside the last one, would not be seen otherwise. The end itself may lie behind a kink.
+A panel with too large an error is halved. Source of the rule: NIST DLMF 3.5(v).
 """
 
 import numpy as np
@@ -19,7 +20,8 @@ from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE
 from rigid_body_sim.numerics.gauss import rule
 
 COUNT = 16
-POINTS = COUNT + 1       # points of a panel: its beginning and the nodes
+POINTS = COUNT + 2       # points of a panel: its beginning, the nodes, and LATE
+LATE = 1.0 - 2.0 ** -10  # of a panel: just before its end
 # rates at a point: those of the entries, |omega|, and what of the power is rounding (W)
 OMEGA, NOISE, COLUMNS = ENTRIES_SIZE, ENTRIES_SIZE + 1, ENTRIES_SIZE + 2
 FIRST_TAIL = 12
@@ -35,7 +37,9 @@ SUMS = MOMENTUM + 1
 ROUNDING = 2.0 ** -54    # share of a size: a smaller error is rounding
 SEEN = 2.0 ** -40        # share of an integrand: c_14 and c_15 that are smaller are rounding
 SMOOTH = 2.0 ** -42      # the same in a panel twice as long
-FITS = 2.0 ** -20        # share of an integrand: how well its value at the beginning fits
+FITS = 2.0 ** -20        # share of an integrand: how well its values at both ends fit at least
+BEYOND = 8.0             # times c_14 and c_15: values at the ends of an analytic function fit so
+SHOWS = 2.0 ** -36       # share of an integrand: a misfit that may still be rounding
 TURNED = 12.0            # rad: the largest turn of the body in a panel
 # advice on a panel's length
 SHORTER, KEPT, LONGER = 0, 1, 2
@@ -52,18 +56,20 @@ def _legendre(x):
 def _tables():
     """Return nodes and weights on [0, 1], and rows that take values at the nodes.
 
-    The rows give c_12 ... c_15, and the value at 0 of the polynomial through the nodes.
+    The rows give c_12 ... c_15, and the values at 0 and LATE of the polynomial through the nodes.
     """
     nodes, weights = (np.array(numbers) for numbers in rule(COUNT))
     values, degrees = _legendre(2.0 * nodes - 1.0), np.arange(COUNT)[:, np.newaxis]
     rows = (2 * degrees + 1) * weights * values
-    begin = np.zeros(COUNT)
-    for k in range(COUNT):
-        begin += rows[k] if k % 2 == 0 else -rows[k]
-    return nodes, weights, rows[FIRST_TAIL:], begin
+    ends = np.zeros((2, COUNT))
+    for end, at_end in zip(ends, _legendre(np.array([-1.0, 2.0 * LATE - 1.0])).T, strict=True):
+        for row, value in zip(rows, at_end, strict=True):
+            end += value * row
+    return nodes, weights, rows[FIRST_TAIL:], ends
 
 
-NODES, WEIGHTS, TAILS, AT_BEGIN = _tables()
+NODES, WEIGHTS, TAILS, AT_ENDS = _tables()
+PLACES = np.array([0.0, *NODES, LATE])
 
 
 @compiled
@@ -98,12 +104,14 @@ def _advice(rates, at, first, last, length, size, slack, noise):
                 b = max(b, abs(total))
             else:
                 a = max(a, abs(total))
-        fit = 0.0
-        for i in range(COUNT):
-            fit += AT_BEGIN[i] * rates[at + 1 + i, k]
-        off = max(off, abs(fit - rates[at, k]))
+        for end in range(2):
+            fit = 0.0
+            for i in range(COUNT):
+                fit += AT_ENDS[end, i] * rates[at + 1 + i, k]
+            off = max(off, abs(fit - rates[at + end * (POINTS - 1), k]))
     nothing = ROUNDING * size
-    if length * off > nothing and off > max(max(FITS, slack) * head, noise):
+    expected = min(FITS * head, BEYOND * a)
+    if length * off > nothing and off > max(expected, max(SHOWS, slack) * head, noise):
         return SHORTER
     if length * a <= nothing or a <= max(SMOOTH * head, noise):
         return LONGER
@@ -137,7 +145,7 @@ def add_panels(rates, edges, longest, shortest, slack, noise, sums):
     Parameters
     ----------
     rates : array (panels POINTS, COLUMNS)
-        At the beginning and at the nodes of each panel.
+        At the PLACES of each panel.
     edges : array (panels + 1,)
         s.
     longest, shortest : float

@@ -23,9 +23,9 @@ from rigid_body_sim.mechanics.panels import (
     ENERGY,
     LONGER,
     MOMENTUM,
-    NODES,
     NOISE,
     OMEGA,
+    PLACES,
     SHORTER,
     SUMS,
     add_panels,
@@ -40,7 +40,6 @@ AT_ONCE = 256            # panels
 CLOCK = 2.0 ** -46       # share of the time, 64 ulps: the clock resolves no shorter panel
 TINY = 2.0 ** -80        # share of the first panel: no shorter one is tried
 CANCELLED = 2.0 ** -48   # share of terms that may cancel: smaller coefficients are rounding
-PLACES = np.array([0.0, *NODES])
 MOST = 2 ** 20
 """Panels between two times that are asked for: seconds of work."""
 EVENLY = 2 ** 12

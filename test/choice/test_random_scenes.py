@@ -49,6 +49,7 @@ def test_so_it_is_for_effects_in_the_words_of_a_scene(judge, number):
 
 
 @pytest.mark.without_numba
+@IN_SOAK
 @pytest.mark.parametrize('number', SLOWING, ids=SLOWING.values())
 def test_so_it_is_for_bodies_that_come_to_rest(judge, number):
     """The rounding foretold is that of the angle turned, not of the largest rate times time."""
@@ -58,6 +59,7 @@ def test_so_it_is_for_bodies_that_come_to_rest(judge, number):
 
 
 @pytest.mark.without_numba
+@IN_SOAK
 @pytest.mark.parametrize('number', LET_GO, ids=LET_GO.values())
 def test_so_it_is_for_bodies_that_begin_at_rest(judge, number):
     from random_scenes import let_go
@@ -141,6 +143,7 @@ def test_a_wrong_law_is_seen(judge, monkeypatch):
 # 2e-17; 2e-14 where the rounding of the unknowns themselves was extrapolated
 # 2e-17; 2e-12 where places were not under control of their error
 @pytest.mark.without_numba
+@IN_SOAK
 @pytest.mark.parametrize(('number', 'times'), [(282, np.linspace(0.05, 1.6, 32)),
                                                (80, np.linspace(0.5, 4.0, 8))])
 def test_the_truth_does_not_depend_on_how_often_it_is_asked(judge, number, times):
@@ -155,6 +158,7 @@ def test_the_truth_does_not_depend_on_how_often_it_is_asked(judge, number, times
 
 
 @pytest.mark.without_numba
+@IN_SOAK
 def test_the_steps_of_the_truth_lose_less_than_doubles_do(judge):
     """A pendulum whose closed form is 1e-16 from 40 digits: its phase shows what steps lose."""
     from random_scenes.draw import drawn
@@ -193,6 +197,7 @@ def test_the_ledger_shows_the_energy_that_a_torsion_spring_gets_beyond_its_end(j
 
 
 @pytest.mark.without_numba
+@IN_SOAK
 def test_the_truth_meets_a_kink_twice_within_a_step(judge):
     """A torque that acts for 0.06 s: the rate gains 4/3 a^3/I. Steps of 0.3 s passed over it."""
     scene = judge.parse_scene("""

@@ -15,6 +15,7 @@ from soak import IN_SOAK
 
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
+from rigid_body_sim.mechanics.panels import COUNT, POINTS
 from rigid_body_sim.mechanics.parameters import SCENE
 from rigid_body_sim.mechanics.quadrature import Actors, Quadrature, _edges, _source
 from rigid_body_sim.scene.effects.protocol import Acting
@@ -162,7 +163,7 @@ def lengths_of_panels(scene, until):
         out[:, 0], out[:, 4] = times, 1.0
         out[:, 5:8] = start[0, 5:8]
         # the nodes are symmetric: the last one is as far from the end as the first is from 0
-        first, last = times[1::17] - times[::17], times[16::17] - times[::17]
+        first, last = (times[k::POINTS] - times[::POINTS] for k in (1, COUNT))
         found.extend((first + last).tolist())
     start = np.zeros((1, 14))
     start[0, 4:8] = 1.0, *scene.initial.angular_velocity
