@@ -15,7 +15,7 @@ from soak import IN_SOAK
 
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, DISSIPATED, WORK
-from rigid_body_sim.mechanics.panels import COUNT, POINTS
+from rigid_body_sim.mechanics.panels import COUNT, NOISE, POINTS
 from rigid_body_sim.mechanics.parameters import SCENE
 from rigid_body_sim.mechanics.quadrature import Actors, Quadrature, _edges, _source
 from rigid_body_sim.scene.effects.protocol import Acting
@@ -152,6 +152,21 @@ def test_a_short_pulse_in_a_slow_motion_is_seen():
     quadrature = turning(scene, rate)
     work = 1.0 + np.arctan((10.0 - place) / width) + np.arctan(place / width)
     assert quadrature.until(10.0)[WORK] == near(work, rel=1e-12)
+
+
+def test_the_noise_of_the_power_is_that_of_forces_and_torques_times_their_speeds():
+    soft = '0.5*(1 + tanh((t - 5)/0.5))'
+    actors = Actors(parse_scene(
+        'scene: s\nbody: {mass: 1.0, inertia: [1, 2, 2.5]}\nconstraint: free\neffects: '
+        f"[force: {{value: ['{soft}', 0, 0], frame: world}}, "
+        f"torque: {{value: [0, '{soft}', 0]}}]\n"
+        'initial: {}\n'), horizon=10.0)
+    states = np.zeros((3, 14))
+    states[:, 4] = 1.0
+    states[0, 11:14], states[1, 11:14], states[2, 5:8] = (1, 0, 0), (2, -3, 6), (0, 3, 4)
+    noise = actors.rates(actors.held(0.0), states)[:, NOISE]
+    assert noise[0] > 0.0 and actors.noise > 0.0
+    assert noise == near([noise[0], 7.0 * noise[0], 5.0 * actors.noise], rel=1e-15)
 
 
 def lengths_of_panels(scene, until):

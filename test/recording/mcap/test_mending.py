@@ -74,18 +74,40 @@ def readable(content):
     return max(counts)
 
 
-def mended(content):
-    """Return what the library reads of a mended file, and the Losses."""
+def mended_file(content):
+    """Return the bytes of a mended file, and the Losses."""
     with tempfile.TemporaryFile() as stream, tempfile.TemporaryFile() as beside:
         stream.write(content)
         stream.flush()
         losses = mend(stream, lambda *_: {'about': 'it'}, lambda: beside).losses
         out = beside if beside.seek(0, 2) else stream
         out.seek(0)
-        made = out.read()
+        return out.read(), losses
+
+
+def mended(content):
+    """Return what the library reads of a mended file, and the Losses."""
+    made, losses = mended_file(content)
     if losses:
         check_summary(made)
     return messages(made), losses
+
+
+@pytest.mark.parametrize('own', [None, {'kept': 'as it was'}])
+def test_a_cut_file_gets_the_metadata_that_it_lacks_and_keeps_its_own(own):
+    stream = io.BytesIO()
+    writer = Writer(stream, chunk_size=300)
+    writer.start('ros2', 'theirs')
+    channel = writer.register_channel('/x', 'cdr', writer.register_schema('a/B', 'ros2msg', b''))
+    if own:
+        writer.add_metadata('rosbag2', own)
+    for k in range(COUNT):
+        writer.add_message(channel, 1000 + 10 * k, bytes(8), 2000 + 10 * k, k)
+    writer.finish()
+    made, losses = mended_file(stream.getvalue()[:-60])
+    assert losses is not None
+    assert [(one.name, one.metadata) for one in make_reader(io.BytesIO(made)).iter_metadata()] == [
+        ('rosbag2', own or {'about': 'it'})]
 
 
 def check_summary(content):
