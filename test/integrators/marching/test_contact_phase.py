@@ -8,8 +8,16 @@ import numpy as np
 import pytest
 from near import near
 
-from rigid_body_sim.integrators.equations.contact_views import ROW, UNKNOWNS
-from rigid_body_sim.integrators.marching.contact_phase import GAP, SWIFT, TIME, _hop
+from rigid_body_sim.integrators.equations.contact_views import FLIGHT, ROLLING, ROW, UNKNOWNS
+from rigid_body_sim.integrators.marching import contact_march, contact_phase
+from rigid_body_sim.integrators.marching.contact_phase import (
+    GAP,
+    MODE,
+    SWIFT,
+    TIME,
+    Phase,
+    _hop,
+)
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 
 pytestmark = pytest.mark.without_numba
@@ -50,3 +58,24 @@ def test_the_first_step_of_a_flight_is_no_longer_than_one_and_a_half_of_its_hop(
         v, a, j, end, pace):
     """Each is seen 2^-12/pace and twice that later: differences of a quadratic are exact."""
     assert hop(v, a, j, pace) == near(1.5 * end, rel=1e-7)    # the rounding of v: 2^-53/2^-24
+
+
+@pytest.mark.parametrize(('mode', 'planned', 'taken'), [
+    (FLIGHT, 1.0, 0.3), (FLIGHT, 0.1, 0.1), (ROLLING, 1.0, 1.0),
+    (FLIGHT, 2.0 ** 22, 4.0)])    # a hop below 2^-20 of a step is rounding
+def test_a_phase_begins_with_the_step_that_is_planned_or_with_that_of_its_hop(
+        monkeypatch, mode, planned, taken):
+    """The gap is t - 5 t^2: a hop of 0.2 s."""
+    def rate(p, y, row):
+        row[TIME], row[GAP] = 1.0, 1.0 - 10.0 * y[TIME]
+
+    def begin(p, rates, front, meta, y):
+        meta[contact_march.PLANNED] = planned
+    monkeypatch.setattr(contact_phase, 'lies_low', lambda *_: False)
+    bound = types.SimpleNamespace(
+        kernels_of=lambda *_: types.SimpleNamespace(begin=begin),
+        rates=types.SimpleNamespace(rate=rate, ROUNDING=2.0 ** -10))
+    p = np.zeros(CONTACT.size)
+    p[MODE], p[SWIFT] = mode, 1.0
+    phase = Phase(bound, p, np.zeros(UNKNOWNS.size), 1e-9, np.zeros((3, ROW.size)), 1.0)
+    assert phase._meta[contact_march.PLANNED] == near(taken, rel=1e-7)
