@@ -227,3 +227,10 @@ def test_an_override_of_what_is_not_there_is_refused(assignment, problem):
     assert str(refused.value).startswith(f'stone: {path or assignment!r}')
     assert f': {problem}' in str(refused.value)
     assert mapping == parse(LISTED, 'stone')
+
+
+def test_twelve_levels_are_read_and_the_thirteenth_is_refused_with_its_line():
+    """The mapping is the first level."""
+    assert parse('a: ' + '[' * 11 + ']' * 11, 'f.yaml')['a'] != []
+    with pytest.raises(BadInput, match=r'^f\.yaml, line 2: nested deeper than 12 levels'):
+        parse('b: 1\na: ' + '[' * 12 + ']' * 12, 'f.yaml')
