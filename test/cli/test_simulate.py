@@ -4,6 +4,7 @@
 import contextlib
 import fcntl
 import json
+import math
 import os
 import pathlib
 import pty
@@ -353,7 +354,7 @@ def test_a_run_that_ends_keeps_every_tick_before_and_the_event(
 
 @pytest.mark.without_numba
 @pytest.mark.parametrize(('effect', 'line', 'count'), [
-    ("torque: {value: ['sqrt(0.0305 - t)', 0, 0]}", 'dop8 on fault: at t = 0.030', 31),
+    ("torque: {value: ['sqrt(0.0305 - t)', 0, 0]}", 'dop8 on fault: at t = ', 31),
     ('strike: {impulse: [1e75, 0, 0], point: [0, 1e75, 0], time: 0.0205}',
      'fault: strike: at 0.0205 s it would do a work of', 21)])
 def test_a_run_that_cannot_go_on_keeps_every_tick_before(tmp_path, capsys, effect, line, count):
@@ -364,7 +365,10 @@ def test_a_run_that_cannot_go_on_keeps_every_tick_before(tmp_path, capsys, effec
     run = str(tmp_path / 'run')
     assert main(['--scene', str(tmp_path / 'fault.yaml'), '--duration', '1', '--accuracy', '1e-6',
                  '--integrator', 'dop8', '--output', run]) == 1
-    assert capsys.readouterr().err.startswith(line)
+    said = capsys.readouterr().err
+    assert said.startswith(line)
+    if 'sqrt' in effect:    # the clock of a step is a sum: it may end an ulp behind the last root
+        assert 0.0304 < float(said.removeprefix(line).split()[0]) <= math.nextafter(0.0305, 1.0)
     assert Recording(run).topics['/pose'].count == count
     assert resimulate([run]) == 0
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kinks of expressions and dry friction: located to round-off, so methods keep their orders."""
 
-import cmath
 import math
 
 import mpmath
@@ -256,25 +255,27 @@ WOUND = '{angle: 0.5, rate: 14}'
 def test_a_torsion_spring_goes_on_from_the_other_end_beyond_a_turn():
     """Between two jumps from 2 pi to -2 pi it is a harmonic oscillator."""
     scene = scene_of('[spring: {stiffness: 2}]', WOUND, HINGE)
-    w = math.sqrt(2 / I)
-    # a + i v/w turns by -w t
-    after = complex(2 * math.pi, math.sqrt(14 ** 2 + (w * 0.5) ** 2 - (w * 2 * math.pi) ** 2) / w)
-    passage = (cmath.phase(complex(0.5, 14 / w)) - cmath.phase(after)) / w
-    period = (cmath.phase(complex(-after.real, after.imag)) - cmath.phase(after)) / w
-    jumps = [passage, passage + period]
-    time = passage + 1.25 * period
+    with mpmath.workdps(30):
+        w, end = mpmath.sqrt(2 / mpmath.mpf(I)), 2 * mpmath.pi
+        # a + i v/w turns by -w t
+        after = mpmath.mpc(end, mpmath.sqrt(14 ** 2 + (w * 0.5) ** 2 - (w * end) ** 2) / w)
+        passage = (mpmath.arg(mpmath.mpc(0.5, 14 / w)) - mpmath.arg(after)) / w
+        period = (mpmath.arg(-mpmath.conj(after)) - mpmath.arg(after)) / w
+        jumps = [float(passage), float(passage + period)]
+        time = float(passage + 1.25 * period)
+        exact = -mpmath.conj(after) * mpmath.expj(-w * (time - passage - period))
+        expected = float(exact.real), float(w * exact.imag)
     ends = []
     for method in ('dop8', 'gauss16'):
         solver, out = started(scene, time, method)
         kinks = np.array(solver._course.kinks(time))
         assert np.abs(kinks[:, np.newaxis] - jumps).min(axis=0).max() < 2e-15, method
         ends.append(out)
-    exact = complex(-after.real, after.imag) * cmath.exp(-0.25j * w * period)
-    # half an ulp of its rate of 14 rad/s moves it by 4.8e-15 and 7.8e-15; measured: 1.2e-14 and
-    # 2.1e-14
+    # half an ulp of its rate of 14 rad/s moves it by 4.8e-15 and 7.8e-15; measured: 9.8e-15 and
+    # 1.8e-14
     for out in ends:
-        assert turned(out) == pytest.approx(exact.real, abs=2.4e-14)
-        assert out[7] == pytest.approx(w * exact.imag, abs=4e-14)
+        assert turned(out) == pytest.approx(expected[0], abs=1e-14)
+        assert out[7] == pytest.approx(expected[1], abs=2e-14)
 
 
 @pytest.mark.without_numba
