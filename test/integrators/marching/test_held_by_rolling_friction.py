@@ -290,8 +290,8 @@ def test_a_hoop_that_rolls_straight_stops_where_it_says_and_stands():
     start, end = sim.states([0.0, 4.0])
     gone = end.position - start.position
     assert np.hypot(*gone[:2]) == pytest.approx(v * v / (C * G), abs=1e-12)
-    # upright it is unstable: half an ulp of its tilt falls by e each 1/rate, to 3.9e-10 rad/s; of 8
-    # starts nearby 0.1 to 2.9 of that were measured, and 3e-23 rad/s along the axis
+    # upright it is unstable: half an ulp of its tilt falls at 3.9e-10 rad/s by then; measured of 8
+    # starts nearby: 0.1 to 2.9 times that, and 3e-23 rad/s along the axis
     rate = math.sqrt(G / (1.5 * R))
     fallen = 2.0 ** -53 * rate * math.cosh(4.0 * rate)
     assert np.abs(end.angular_velocity).max() < 6.0 * fallen
