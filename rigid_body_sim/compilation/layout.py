@@ -31,7 +31,7 @@ import typing
 
 import numpy as np
 
-from rigid_body_sim.compilation.jit import inlined
+from rigid_body_sim.compilation.jit import HAVE_NUMBA, inlined
 
 Pair = tuple[float, float]                          # a double-double number, or a plane vector
 Vector = tuple[float, float, float]
@@ -94,9 +94,22 @@ class Layout:
     @functools.cached_property
     def load(self):
         """Read the value (see the class)."""
-        views, places = {}, itertools.count(self.first, self._stride)
-        value = _written(self._kind, self._name, places, views)
-        return self._function('load', '(array, at=0)', [f'return {value}'], views)
+        views, places = {}, range(self.first, self.places.stop, self._stride)
+        if HAVE_NUMBA:
+            lines, numbers = [], [f'array[at + {place}]' for place in places]
+        else:
+            lines, numbers = self._read_at_once(), [f'x{k}' for k in range(self.size)]
+        value = _written(self._kind, self._name, iter(numbers), views)
+        return self._function('load', '(array, at=0)', [*lines, f'return {value}'], views)
+
+    def _read_at_once(self):
+        """Return the lines that read the numbers as floats, for plain Python.
+
+        Arithmetic of NumPy's scalars has the same bits and takes five times as long.
+        """
+        names = ''.join(f'x{k}, ' for k in range(self.size))
+        return [f'part = array[at + {self.first}:at + {self.places.stop}:{self._stride}]',
+                f'{names}= part if isinstance(part, (list, tuple)) else part.tolist()']
 
     @functools.cached_property
     def store(self):
@@ -160,12 +173,12 @@ def _unpacked(kind, name, names):
     return f'({"".join(f"{_unpacked(part, name, names)}, " for _, part in _parts(kind, name))})'
 
 
-def _written(kind, name, places, views):
-    """Return the expression that reads a value; `views` collects the classes it names."""
+def _written(kind, name, numbers, views):
+    """Return the expression of a value made of numbers; `views` collects the classes it names."""
     if kind is float:
-        return f'array[at + {next(places)}]'
+        return next(numbers)
     parts = _parts(kind, name)
-    inside = ''.join(f'{_written(part, name, places, views)}, ' for _, part in parts)
+    inside = ''.join(f'{_written(part, name, numbers, views)}, ' for _, part in parts)
     if typing.get_origin(kind) is tuple:
         return f'({inside})'
     views[f'{kind.__name__}_{len(views)}'] = kind

@@ -43,8 +43,9 @@ def rates(p, states, out):
                                     rotate_back(*axes, *angular_momentum(scene, omega)), now.time,
                                     place)
         taken = rotate(*q, *_taken(scene, omega, rotate(*axes, *torque)))
-        store_entries(out[k], Entries(work, heat, taken))
-        out[k, ENTRIES_SIZE] = hypot3(*omega)
+        row = out[k]
+        store_entries(row, Entries(work, heat, taken))
+        row[ENTRIES_SIZE] = hypot3(*omega)
 
 
 @compiled

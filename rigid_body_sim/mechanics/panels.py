@@ -16,6 +16,7 @@ A panel with too large an error is halved. Source of the rule: NIST DLMF 3.5(v).
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.memory import table
 from rigid_body_sim.mechanics.ledger import ENTRIES, ENTRIES_SIZE
 from rigid_body_sim.numerics.gauss import rule
 
@@ -68,7 +69,8 @@ def _tables():
     return nodes, weights, rows[FIRST_TAIL:], ends
 
 
-NODES, WEIGHTS, TAILS, AT_ENDS = _tables()
+NODES, *_constants = _tables()
+WEIGHTS, TAILS, AT_ENDS = map(table, _constants)
 PLACES = np.array([0.0, *NODES, LATE])
 
 

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.compilation.memory import memory, table
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import booking, parameters
 from rigid_body_sim.mechanics.bounds import cancelling_terms, drive, resting, swing_rate
@@ -108,7 +109,7 @@ class Actors:
             source = _source(self._acting(-math.inf), self._frame.path is not None)
             self._kernels = specialise(booking, acting=source)
         out = np.empty((len(states), COLUMNS))
-        self._kernels.rates(p, states, out)
+        self._kernels.rates(memory(p), memory(states), memory(out))
         x, y, z = states[:, VELOCITY].T
         speed = np.sqrt(x * x + y * y + z * z)
         out[:, NOISE] = self.noise * out[:, OMEGA] + self._noise_of_force * speed
@@ -227,8 +228,9 @@ class Quadrature:
             self._states(times, states)
             # the edges are rounded, so a panel may be an ulp of the time longer than asked
             shortest = max(1.001 * least, CLOCK * abs(t) + TINY * self._first)
-            added, advice = add_panels(self._actors.rates(p, states), edges, self._longest,
-                                       shortest, self._slack, self._actors.noise, sums)
+            rates = table(self._actors.rates(p, states))
+            added, advice = add_panels(rates, memory(edges), self._longest, shortest, self._slack,
+                                       self._actors.noise, memory(sums))
             self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)
             if advice == SHORTER:
                 length, most = 0.5 * (edges[added + 1] - edges[added]), 1

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.compilation.memory import memory
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import look, on_all_cores
 from rigid_body_sim.errors import BadInput
@@ -99,8 +100,8 @@ class Exact:
         """Anchor the motion at a state (14 doubles, with its time); return a solver from it."""
         started = object.__new__(Exact)
         started.__dict__ = self.__dict__.copy()
-        started.anchor, started._start = np.empty(self.motion.ANCHOR_SIZE), vector.copy()
-        self.motion.anchor(self._parameters, vector, started.anchor)
+        started.anchor, started._start = memory(np.empty(self.motion.ANCHOR_SIZE)), vector.copy()
+        self.motion.anchor(memory(self._parameters), memory(vector), started.anchor)
         return started
 
     def runner(self):
@@ -132,13 +133,13 @@ class Exact:
         BadInput
             A time so long before the start that the motion is beyond what doubles hold.
         """
-        states, anchor = self._loops.states, self.anchor
+        states, anchor, numbers = self._loops.states, self.anchor, memory(times)
         if len(times) <= AT_ONCE:
-            states(anchor, times, out)
+            states(anchor, numbers, out)
         else:
             for first in range(0, len(times), AT_ONCE):    # an interrupt is handled between calls
                 look()
-                states(anchor, times[first:first + AT_ONCE], out[first:first + AT_ONCE])
+                states(anchor, numbers[first:first + AT_ONCE], out[first:first + AT_ONCE])
         if len(times) and times.min() < self._start[TIME]:
             _refuse_beyond(out)
 

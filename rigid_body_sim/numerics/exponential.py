@@ -10,6 +10,7 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled_inline
+from rigid_body_sim.compilation.memory import table
 from rigid_body_sim.numerics.phase import nearest
 
 PARTS = 46.16624130844683    # 32 / log 2
@@ -18,8 +19,8 @@ PART, PART_LOW = 0.02166084937925916, 1.3239129268154012e-11
 # from BEYOND on the result is 0; LAST is a number whose entry in the tables is 0
 BEYOND, LAST = 746.0, 34500.0
 with localcontext(Context(prec=50, rounding=ROUND_HALF_EVEN)):
-    FRACTIONS = np.array([float(Decimal(2) ** (Decimal(-j) / 32)) for j in range(32)])
-POWERS = np.array([math.ldexp(1.0, -k) for k in range(int(LAST) // 32 + 1)])
+    FRACTIONS = table(np.array([float(Decimal(2) ** (Decimal(-j) / 32)) for j in range(32)]))
+POWERS = table(np.array([math.ldexp(1.0, -k) for k in range(int(LAST) // 32 + 1)]))
 
 
 @compiled_inline

@@ -29,6 +29,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled
+from rigid_body_sim.compilation.memory import table
 from rigid_body_sim.numerics.functions import asinh, cos, hypot, sin
 from rigid_body_sim.numerics.rotations import multiply
 
@@ -97,8 +98,8 @@ def _tables():
     return axis, turn
 
 
-AXIS, TURN = _tables()
-RECIPROCALS = np.array([0.0] + [1.0 / n for n in range(1, 41)])
+AXIS, TURN = map(table, _tables())
+RECIPROCALS = table(np.array([0.0] + [1.0 / n for n in range(1, 41)]))
 
 
 @compiled
@@ -201,7 +202,7 @@ def _taylor(a, b, ramp):
     bx, by, bz, bs = 0.0, 0.0, 0.0, 0.0
     ex, ey, ez, es = 0.0, 0.0, 0.0, 1.0
     ox, oy, oz, os = 0.0, 0.0, 0.0, 0.0
-    for n in range(1, RECIPROCALS.size, 2):
+    for n in range(1, len(RECIPROCALS), 2):
         an, bn, rn = a * RECIPROCALS[n], b * RECIPROCALS[n], ramp * RECIPROCALS[n]
         bx, by, bz, bs = (an * s + bn * z + rn * bs, bn * s - an * z - rn * bz,
                           an * y - bn * x + rn * by, -an * x - bn * y - rn * bx)

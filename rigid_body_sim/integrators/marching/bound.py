@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.compilation.memory import memory
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.integrators.marching import track
 from rigid_body_sim.integrators.marching.course import Course
@@ -79,7 +80,7 @@ class Bound:
         _, point, following = self.parts_of(piece)
         kept = piece[self._places[-1] + track.STORE:][:len(point)]
         for one in (point, following, kept):
-            one[STEP:VALUES] = head
+            one[STEP:VALUES] = memory(head)
 
     def first_head(self, step):
         """Return a planned step (s) and the scales of a march that none went before."""

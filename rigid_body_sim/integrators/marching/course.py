@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.compilation.memory import memory
 from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.points import FIXED, LOST, REACHED, TIME, VALUES
@@ -56,13 +57,13 @@ class Course:
 
     def _first_piece(self):
         """Append the piece at the start, not filled yet; return what track.first_piece takes."""
-        self._pieces.append(np.empty(self._bound.piece_size))
+        self._pieces.append(memory(np.empty(self._bound.piece_size)))
         return self._bound.prototype(self._begin), self._vector, self._pieces[0]
 
     def _next_piece(self, begin):
         """Return the piece that begins where the last one ends, at a time (s)."""
-        bound, before, piece = self._bound, self._pieces[-1], np.empty(self._bound.piece_size)
-        prototype = bound.prototype(begin)
+        bound, before = self._bound, self._pieces[-1]
+        piece, prototype = memory(np.empty(bound.piece_size)), memory(bound.prototype(begin))
         fixed, first = bound.equations.fixed_count, bound.point + VALUES
         values = slice(first, first + bound.march.SIZE)
         piece[:len(prototype)] = prototype
@@ -117,7 +118,7 @@ class Course:
             while done < until:
                 look()
                 part = order[done:min(until, done + AT_ONCE)]
-                filled = track.states(piece, times, part, end, out)
+                filled = track.states(piece, *map(memory, (times, part)), end, memory(out))
                 done += filled
                 if filled < len(part):
                     self._reach(piece, times[order[done]], end, doublings)

@@ -84,7 +84,8 @@ def expanded(p, control, y, t, planned):
     least = max(LEAST * max(planned, UNMOVED), TICKS * abs(t))
     for base in range(SIZE, SIZE + BASED):
         if not change(S, base, least)[0] <= FALL * S[PLACES + base]:
-            S[PLACES * (LOW + 1):PLACES * (ORDER + 1)] = 0.0
+            for place in range(PLACES * (LOW + 1), PLACES * (ORDER + 1)):
+                S[place] = 0.0
             return least
     return 0.0
 

@@ -10,6 +10,7 @@ from math import comb
 
 import numpy as np
 
+from rigid_body_sim.compilation.memory import table
 from rigid_body_sim.numerics.gauss import CONTEXT, legendre, roots, value
 
 STAGES = 8
@@ -92,13 +93,12 @@ with localcontext(CONTEXT):
     SLOPES = _floats([[value(_slope(polynomial), c)
                        for polynomial in list(_through([Decimal(0), *_C]))[1:]] for c in _C])
     # AHEAD[j, k]: from 1 to 1 + x the j-th basis polynomial adds sum_k AHEAD[j, k] x^(k + 1)
-    AHEAD = _floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS])
+    AHEAD = table(_floats([_integral(_continued(polynomial))[1:] for polynomial in _BASIS]))
     # DENSE[j, k]: the integral from 0 to x of the polynomial through the nodes of the step before
     # (on [-1, 0]) and of this one (on [0, 1]) that is 1 at the j-th, as a sum over k of DENSE[j,
     # k] P_k(x)
-    DENSE = _floats(
-        [_in_legendre(_integral(polynomial)) for polynomial in _through([c - 1 for c in _C] + _C)]
-    )
+    DENSE = table(_floats([_in_legendre(_integral(polynomial))
+                           for polynomial in _through([c - 1 for c in _C] + _C)]))
     # BETWEEN[i, j]: the same as A up to points between the nodes
     _BETWEEN = _halves(_C)
     BETWEEN = _floats([[value(integral, c) for integral in _INTEGRALS] for c in _BETWEEN])

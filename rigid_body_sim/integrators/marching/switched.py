@@ -107,7 +107,7 @@ class Within(Course):
         """Return planned step and scales of the step that holds a time (s), an array."""
         self.state(time, np.empty(STATE_SIZE))
         _, point, _ = self._bound.parts_of(self._pieces[0])
-        return point[STEP:VALUES].copy()
+        return np.array(point[STEP:VALUES])
 
 
 class Resting:

@@ -107,7 +107,8 @@ def test_matrix_is_symplectic():
 def test_predictor_continues_polynomials(ratio):
     for degree in range(8):
         values = gauss_nodes.C ** degree
-        terms = values[:, np.newaxis] * gauss_nodes.AHEAD * ratio ** np.arange(1.0, 9.0)
+        weighed = values[:, np.newaxis] * np.asarray(gauss_nodes.AHEAD)
+        terms = weighed * ratio ** np.arange(1.0, 9.0)
         exact = ((1.0 + ratio) ** (degree + 1) - 1.0) / (degree + 1)
         # 0.1 of it: the terms cancel
         assert abs(terms.sum() - exact) < ULP * np.abs(terms).sum()
