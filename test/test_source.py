@@ -228,6 +228,15 @@ def constant(argument, names, local):
     return None
 
 
+def kernels(lines, tree):
+    """Yield the kernels of a source file."""
+    if any(line.removeprefix('@') in DECORATORS for line in map(str.strip, lines)):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef) and DECORATORS & {
+                    one.id for one in node.decorator_list if isinstance(one, ast.Name)}:
+                yield node
+
+
 def handed_over():
     """Return {(module, kernel): {place of an argument: what kernels hand to it}}.
 
@@ -235,13 +244,8 @@ def handed_over():
     """
     found = collections.defaultdict(lambda: collections.defaultdict(set))
     for path, lines, tree in sources():
-        if not any(line.removeprefix('@') in DECORATORS for line in map(str.strip, lines)):
-            continue
-        names = vars(importlib.import_module(f'rigid_body_sim.{path[:-3].replace("/", ".")}'))
-        for kernel in ast.walk(tree):
-            if not isinstance(kernel, ast.FunctionDef) or not DECORATORS & {
-                    one.id for one in kernel.decorator_list if isinstance(one, ast.Name)}:
-                continue
+        for kernel in kernels(lines, tree):
+            names = vars(importlib.import_module(f'rigid_body_sim.{path[:-3].replace("/", ".")}'))
             local = {one.arg for one in kernel.args.args} | {
                 one.id for one in ast.walk(kernel)
                 if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
@@ -272,6 +276,19 @@ def test_no_kernel_is_compiled_once_more_for_a_constant():
     wrong = [f'{key} takes {sorted(map(str, kinds))} as argument {place}'
              for key, places in found.items() for place, kinds in places.items()
              if len(kinds) > 1 and kinds != {None} and key not in IN_VECTORS]
+    assert wrong == []
+
+
+def test_no_kernel_assigns_to_a_slice():
+    """Without numba a slice is that of a memoryview, which takes no numbers."""
+    seen, wrong = 0, []
+    for path, lines, tree in sources():
+        for kernel in kernels(lines, tree):
+            seen += 1
+            wrong += [f'{path}:{node.lineno}' for node in ast.walk(kernel)
+                      if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store)
+                      and any(isinstance(one, ast.Slice) for one in ast.walk(node.slice))]
+    assert seen > 300
     assert wrong == []
 
 

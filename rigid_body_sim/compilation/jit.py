@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Decorators of kernels: numba compiles them if it is installed, else they are plain Python.
 
-Kernels follow four rules, so that they mean the same with and without numba: scalars and small
-arrays only; no functions of ``math`` but sqrt, abs, floor, copysign, frexp and ldexp, which are
-exact or rounded once everywhere (numerics/functions.py has the others); no division by zero (plain
-Python would raise); no ``**`` (its rounding differs between the two).
+Kernels follow five rules, so that they mean the same with and without numba: scalars and small
+arrays only; no assignment to a slice (without numba an array is a memoryview, memory.py); no
+functions of ``math`` but sqrt, abs, floor, copysign, frexp and ldexp, which are exact or rounded
+once everywhere (numerics/functions.py has the others); no division by zero (plain Python would
+raise); no ``**`` (its rounding differs between the two).
 """
 
 import functools
