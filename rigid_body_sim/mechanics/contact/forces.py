@@ -12,7 +12,7 @@ from rigid_body_sim.compilation.jit import compiled, inlined
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector
 from rigid_body_sim.mechanics.contact.laws import System, departure, sticking
 from rigid_body_sim.mechanics.contact.patch import patch_sticking, patch_system
-from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning, tilting
+from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning, swept, tilting
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -92,7 +92,7 @@ def standing(c, q, omega, axes, r):
     """Return the Posture of a body whose lowest point is at r."""
     carried = cross(omega, r)
     moved = shifted(c.kind, c.size, axes[2], cross(axes[2], omega))
-    drawn = plus(cross(omega, carried), cross(omega, moved))
+    drawn = cross(omega, swept(c, axes[2], omega))
     return Posture(q, omega, axes, r, tilting(c, axes[2]), carried, moved, drawn, c.inverse,
                    (0.0, 0.0, 0.0))
 
@@ -152,7 +152,7 @@ def rolling_force(c, at, push):
     F).
     """
     r = at.r
-    net = scaled(-c.mass, cross(at.omega, plus(at.carried, at.moved)))    # m A
+    net = scaled(-c.mass, at.drawn)    # m A
     x, y, z = minus(plus(push.torque, cross(r, net)), torque_of(at, push.force))
     square = c.mass * dot(r, r)
     (a, b, d), (_, e, g), (_, _, h) = c.inertia

@@ -12,7 +12,7 @@ import math
 from rigid_body_sim.compilation.jit import inlined
 from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER, HELD
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
-from rigid_body_sim.scene.surfaces import TINY, TORUS, lowest, shifted, tilted
+from rigid_body_sim.scene.surfaces import ELLIPSOID, TINY, TORUS, lowest, shifted, tilted
 
 
 @inlined
@@ -25,6 +25,24 @@ def lever(c, gamma):
 def tilting(c, gamma):
     """Return r x gamma, body axes: the couple about the centre of mass over a normal force, m."""
     return plus(cross(c.middle, gamma), tilted(c.kind, c.size, gamma))
+
+
+@inlined
+def swept(c, gamma, omega):
+    """Return omega x r + r', m/s: how the lowest point moves in space beside the centre of mass.
+
+    The middle of a ball, or of the tube of a torus, stays above it: the rest of r is left out,
+    since its two parts would leave their rounding.
+    """
+    core, turn = c.middle, cross(gamma, omega)
+    if c.kind == ELLIPSOID:
+        core = plus(core, lowest(c.kind, c.size, gamma))
+        return plus(cross(omega, core), shifted(c.kind, c.size, gamma, turn))
+    if c.kind == TORUS:
+        ring = c.size[0], 0.0, 0.0
+        core = plus(core, lowest(c.kind, ring, gamma))
+        return plus(cross(omega, core), shifted(c.kind, ring, gamma, turn))
+    return cross(omega, core)
 
 
 @inlined

@@ -22,6 +22,7 @@ from rigid_body_sim.mechanics.contact.touch import (
     lever,
     response,
     spinning,
+    swept,
     tangent,
     tilting,
 )
@@ -94,6 +95,20 @@ def test_the_lever_of_a_normal_force_is_as_exact_as_the_axes_differ():
     sigma = math.sqrt(a * a * x * x + b * b * (y * y + z * z))
     expected = 0.0, (a * a - b * b) * z * x / sigma, (b * b - a * a) * x * y / sigma
     assert tilting(c, gamma) == near([float(one) for one in expected], rel=1e-15)
+
+
+@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('surface', SURFACES)
+def test_the_lowest_point_moves_in_space_as_the_body_turns_and_over_its_surface(surface, seed):
+    """Below the middle of a ball it stays, not but for the rounding of its two motions."""
+    c, gamma, omega = parameters(surface), axes(seed)[2], (3.0, -2.0, 5.0)
+    moved = shifted(c.kind, c.size, gamma, tuple(np.cross(gamma, omega)))
+    expected = np.cross(omega, lever(c, gamma)) + moved
+    assert swept(c, gamma, omega) == pytest.approx(expected, abs=2e-15)
+    about_middle = swept(c._replace(middle=(0.0, 0.0, 0.0)), gamma, omega)
+    assert (about_middle == (0.0, 0.0, 0.0)) == (surface == 'sphere')
+    if surface == 'torus':    # its tube has no part in it
+        assert swept(c._replace(size=(0.2, 0.07, 0.0)), gamma, omega) == swept(c, gamma, omega)
 
 
 @pytest.mark.parametrize('seed', range(4))
