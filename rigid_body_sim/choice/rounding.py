@@ -17,7 +17,8 @@ import numpy as np
 from rigid_body_sim.choice import measured
 from rigid_body_sim.choice.comparison import apart, lengths
 from rigid_body_sim.choice.measured import HALF_ULP
-from rigid_body_sim.choice.runs import looks, run
+from rigid_body_sim.choice.runs import LOOKS, looks, run
+from rigid_body_sim.choice.trial_time import changes
 from rigid_body_sim.mechanics.bounds import angles_turned, drive, swing_rate
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import matrix, normalised, rotate
@@ -41,6 +42,7 @@ MOVED = (2.0 ** 23, 2.0 ** 10, 1.0)    # number of half ulps by which the start 
 FAR = 2.0 ** 16          # half ulps of a move that tells magnification from the errors of steps
 FARTHER = 2.0 ** 8       # factor by which it changes a run at least if the motion magnifies
 AGAIN = 4.0 * HALF_ULP   # rad, rounding of the attitude at a strike
+MANY = LOOKS            # strikes and jumps between looks: more are a torque that changes slowly
 SLOWED = 0.5             # a run is looked at earlier where the rate falls below that share
 BLOCK = 256              # bodies that run at once
 LINEAR = 0.03            # rad: larger changes are no longer proportional to their cause
@@ -50,28 +52,52 @@ def of_angle_turned(scene, prototype, states, times):
     """Return half an ulp of all the angle that a body has turned at times, rad, shape (n,).
 
     At each moment it counts as turning as fast as it does then or will until the time. A rate that
-    a torque adds counts twice, since the moment of inertia is rounded, too. On a hinge the
-    attitude is the product of that of the start and of a turn, each of them rounded.
+    a torque adds counts twice, since the moment of inertia is rounded, too. One that torques or
+    strikes take away again leaves its rounding, unless heat does away with it: it counts to the
+    end. On a hinge the attitude is the product of that of the start and of a turn, each of them
+    rounded.
 
     Parameters
     ----------
     prototype : Solver
-        It runs again up to the first of the times if heat has made the body slow by then.
+        It runs again up to the first of the times if heat has made the body slow by then, and up
+        to strikes and jumps of torques that no look tells of.
     states : array (n, 14)
         The run, at rising times (s).
     """
-    start = scene.initial.vector
-    first = hypot3(*start[ANGULAR_VELOCITY].tolist())
-    rates = lengths(states[:, ANGULAR_VELOCITY])
-    seen = np.zeros(1)
-    if rates[0] < SLOWED * first and measured.makes_heat(scene):
-        seen = _early(first, float(times[0]))
-        early = run(scene, prototype, start, seen[1:])
-        rates = np.concatenate((lengths(early[:, ANGULAR_VELOCITY]), rates))
-    turned = np.empty(len(seen) + len(times))
-    angles_turned(np.concatenate((seen, times)), np.concatenate(((first,), rates)),
-                  first if drive(scene, None) > 0.0 else math.inf, turned)
-    return HALF_ULP * (_numbers(scene) + turned[len(seen):])
+    start, heats = scene.initial.vector, measured.makes_heat(scene)
+    first, pushed = hypot3(*start[ANGULAR_VELOCITY].tolist()), drive(scene, None) > 0.0
+    unseen, found, rates = _unseen(scene, times), (), lengths(states[:, ANGULAR_VELOCITY])
+    if rates[0] < SLOWED * first and heats:
+        unseen = np.union1d(unseen, _early(first, float(times[0]))[1:])
+    if len(unseen):
+        found = lengths(run(scene, prototype, start, unseen)[:, ANGULAR_VELOCITY])
+    when = np.concatenate((np.zeros(1), unseen, times))
+    order = np.argsort(when, kind='stable')
+    when, rates = when[order], np.concatenate(((first,), found, rates))[order]
+    turned, left = np.empty((2, len(when)))
+    angles_turned(when, rates, first if pushed else math.inf, turned)
+    if (pushed or scene.strikes) and not heats:
+        angles_turned(when, np.maximum.accumulate(rates), math.inf, left)
+        turned = np.maximum(turned, left)
+    return HALF_ULP * (_numbers(scene) + turned[order > len(unseen)])
+
+
+def _unseen(scene, times):
+    """Return when strikes are or torques jump, where the next of them comes before a look does.
+
+    A body may be fast between the two, and at rest at all looks. Of more than MANY looks tell
+    enough.
+
+    Parameters
+    ----------
+    times : array (n,)
+        Those of the looks, s.
+    """
+    found = np.array(changes(scene, float(times[-1])))
+    looks_before = np.searchsorted(times, found)
+    unseen = found[1:-1][looks_before[1:-1] == looks_before[2:]]
+    return unseen if len(unseen) <= MANY else np.empty(0)
 
 
 def angle_turned(scene, states, times):

@@ -80,6 +80,25 @@ def lowest(kind, size, gamma):
 
 
 @inlined
+def tilted(kind, size, gamma):
+    """Return s x gamma, m: the couple about the middle of the surface over a normal force.
+
+    What of s is along gamma has no part in it. The products of s and gamma would leave the
+    rounding of s in its place: on a ball 1e-17 R, beside which friction may be small.
+    """
+    x, y, z = gamma
+    if kind == ELLIPSOID:
+        a, b, c = size
+        share = -1.0 / math.sqrt(dot(gamma, product(product(size, size), gamma)))
+        return (share * ((b - c) * (b + c)) * (y * z), share * ((c - a) * (c + a)) * (z * x),
+                share * ((a - b) * (a + b)) * (x * y))
+    if kind == TORUS:
+        share = size[0] / (math.sqrt(x * x + y * y) + TINY) * z
+        return -share * y, share * x, 0.0
+    return 0.0, 0.0, 0.0
+
+
+@inlined
 def shifted(kind, size, gamma, x):
     """Return S x, m, for a vector x perpendicular to gamma."""
     if kind == ELLIPSOID:

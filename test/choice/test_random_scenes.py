@@ -191,7 +191,7 @@ def test_the_ledger_shows_the_energy_that_a_torsion_spring_gets_beyond_its_end(j
     truth.to(0.1)
     jumped = float(truth.jumped)
     assert jumped == near(4 * np.pi * 2 * 0.3, rel=1e-15)
-    simulation = judge.Simulation(scene, rate=10.0, horizon=0.1)
+    simulation = judge.Simulation(scene, accuracy=1e-14, rate=10.0, horizon=0.1)
     assert judge._unbalanced(simulation, jumped) < 2e-15    # measured: 4e-16
     assert simulation.ledger()['energy_residual'] > 0.01
 

@@ -10,6 +10,7 @@ from near import near
 from scipy.spatial.transform import Rotation
 
 from rigid_body_sim.choice import rounding, runs
+from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.motions import fixed_axis
 from rigid_body_sim.motions.solver import Exact
 from rigid_body_sim.scene.scene import load_scene, parse_scene
@@ -99,6 +100,51 @@ def test_a_run_is_made_again_where_heat_halves_the_rate_by_the_first_look(share,
     turned = mean(first, share * first) * until + share * first * (TIMES - until)
     assert found == near(HALF_ULP * ((8.0 if drag else 4.0) + turned), rel=1e-14)
     assert asked == [(first, 1.0)] * again
+
+
+STOPPED = """
+scene: stopped
+body: {mass: 1, inertia: [2, 3, 4]}
+constraint: free
+effects: [HEAT torque: {times: [0.5, 0.50390625, 0.625, 0.62890625], frame: body,
+                   values: [[0, 0, 1e4], [0, 0, 0], [0, 0, -1e4], [0, 0, 0]]}]
+initial: {}
+"""
+
+
+@pytest.mark.parametrize('heat', ['', 'drag: {linear: 0, angular: 1e-6},'])
+def test_a_rate_that_torques_give_and_take_between_looks_leaves_its_rounding(heat):
+    """It is 9.77 rad/s for an eighth of a second, and turns the body on by half an ulp of it.
+
+    Heat may end that: there it counts as a rate that a torque adds and that decays until a look.
+    """
+    one = parse_scene(STOPPED.replace('HEAT', heat))
+    prototype = Stepped(one, 'dop8', 1e-9, horizon=4.0)
+    states = runs.run(one, prototype, one.initial.vector, TIMES)
+    assert np.abs(states[:, 5:8]).max() < 1e-4
+    found = rounding.of_angle_turned(one, prototype, states, TIMES) / HALF_ULP - 4.0
+    rate = 1e4 / 4.0 / 256.0
+    if heat:
+        assert found == near(2.0 * rate * (0.625 + 0.375 / 6.0), rel=1e-4)
+    else:
+        assert found[1:] == near(rate * TIMES[1:], rel=1e-12)
+
+
+@pytest.mark.parametrize(('strikes', 'unseen'), [
+    ([], []), ([1.5], []), ([1.25, 1.5], [1.25]), ([1.5, 2.0], [1.5]), ([1.0, 1.5], []),
+    ([0.5, 0.75, 1.5, 3.25, 3.5, 3.75], [0.5, 3.25, 3.5]), ([2.25, 4.0], []), ([3.5, 5.0], [])])
+def test_the_strikes_that_no_look_tells_of_are_those_soon_followed_by_another(strikes, unseen):
+    """A look at the time of a strike tells what it did."""
+    one = coasting_scene(*((time, 1.0) for time in strikes))
+    assert rounding._unseen(one, TIMES).tolist() == unseen
+
+
+@pytest.mark.parametrize(('many', 'unseen'), [(65, 64), (66, 0)])
+def test_of_more_than_64_jumps_between_looks_the_looks_tell_enough(many, unseen):
+    times = [0.5 + k / 1024.0 for k in range(many)]
+    one = coasting_scene(effects=(
+        f'torque: {{times: {times}, values: {[[0, 0, k % 2] for k in range(many)]}}}',))
+    assert len(rounding._unseen(one, TIMES)) == unseen
 
 
 def test_bodies_that_a_torque_speeds_up_count_what_it_adds_twice():

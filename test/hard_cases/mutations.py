@@ -65,24 +65,24 @@ MUTANTS = {
         'scene/effects/internal_dissipation.py', 'ENDED = 2.0 ** -54', 'ENDED = 0.0',
         'test/hard_cases/test_08_dissipation.py::test_case[stiff: c dt = 1e+06]'),
     'contact: friction along the slip': (
-        'mechanics/contact/forces.py', 'return ((-mu * N * dx, -mu * N * dy, N),',
-        'return ((mu * N * dx, mu * N * dy, N),',
+        'mechanics/contact/forces.py', 'return ((N * unit[0], N * unit[1], N),',
+        'return ((-N * unit[0], -N * unit[1], N),',
         'test/integrators/marching/test_held_by_rolling_friction.py::'
         'test_the_ledger_of_a_ball_that_friction_turned_and_stopped_leaves_round_off'),
     'contact: normal force without the centripetal term': (
-        'mechanics/contact/forces.py', 'drawn = plus(cross(omega, carried), cross(omega, moved))',
+        'mechanics/contact/forces.py', 'drawn = cross(omega, swept(c, axes[2], omega))',
         'drawn = cross(omega, moved)',
         'test/mechanics/contact/test_standing.py::'
         'test_a_body_that_slips_is_held_on_the_plane_by_a_force_on_the_cone[0]'),
     'contact: force of rolling without the centripetal term': (
-        'mechanics/contact/forces.py', 'cross(at.omega, plus(at.carried, at.moved))',
-        'cross(at.omega, at.moved)',
+        'mechanics/contact/forces.py', 'net = scaled(-c.mass, at.drawn)',
+        'net = scaled(-c.mass, cross(at.omega, at.moved))',
         'test/integrators/marching/test_taylor_on_a_plane.py::'
         'test_the_series_of_a_phase_meet_its_equations_under_friction'
         '[disk-air_film: {viscosity: 0.03}-2]'),
     'contact: moment of its force about the centre of mass turned': (
-        'integrators/equations/contact_rates.py', 'cross(at.r, along_body(at.axes, contact.f))',
-        'cross(along_body(at.axes, contact.f), at.r)',
+        'integrators/equations/contact_rates.py', 'torque = plus(contact.push.torque,',
+        'torque = minus(contact.push.torque,',
         'test/integrators/marching/test_convex_body.py::'
         'test_dry_rolling_friction_stops_a_ball_where_it_says'),
     'contact: restitution goes on into the plane': (

@@ -11,7 +11,7 @@ from rigid_body_sim.compilation.jit import compiled, compiled_inline
 from rigid_body_sim.compilation.layout import Vector
 from rigid_body_sim.compilation.templates import UNBOUND
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT
-from rigid_body_sim.mechanics.contact.forces import Push, along_body, posture
+from rigid_body_sim.mechanics.contact.forces import Push, posture, torque_of
 from rigid_body_sim.mechanics.contact.holding import gripped, rolling_couples, way_at
 from rigid_body_sim.mechanics.contact.touch import couples, gap_of, grips
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
@@ -101,7 +101,7 @@ def posture_after(p, c, now, at, f, touch, slip, since, short):
         The time of the Posture after that of the unknowns, and by how much later, s.
     """
     acts = applied_at(p, c, now, at, at.omega, minus(slip, apply(at.axes, at.carried)), since)
-    torque = plus(plus(acts.couple, touch), cross(at.r, along_body(at.axes, f)))
+    torque = plus(plus(acts.couple, touch), torque_of(at, f))
     grown = hastened(c, at, minus(torque, cross(at.omega, apply(c.uneven, at.omega))))
     x, y, z, w = multiply(*at.q, *at.omega, 0.0)
     half = 0.5 * short

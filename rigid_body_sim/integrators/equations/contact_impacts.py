@@ -9,13 +9,12 @@ from typing import NamedTuple
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.layout import Pair, Vector, layout
 from rigid_body_sim.integrators.equations.contact_views import LEDGER, UNKNOWNS
-from rigid_body_sim.mechanics.contact.forces import posture
+from rigid_body_sim.mechanics.contact.forces import posture, torque_of
 from rigid_body_sim.mechanics.contact.laws import impulse
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.contact.touch import response
 from rigid_body_sim.numerics.functions import hypot
-from rigid_body_sim.numerics.rotations import rotate_back
-from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
+from rigid_body_sim.numerics.vectors import apply, dot, plus, scaled
 
 HALVINGS = 60    # of an interval, until its ends are neighbours
 
@@ -121,10 +120,10 @@ def collide(p, y, restitution, out):
     c, now = load_contact(p), load_unknowns(y)
     at = posture(c, now.q, now.omega)
     before = plus(now.u, apply(at.axes, at.carried))
-    G = response(c.mass, c.inverse, at.axes, at.r, (0.0, 0.0, 0.0))
+    G = response(c.mass, c.inverse, at.axes, at.r, at.tilting)
     e, given, after, loss = bearable(G, before, restitution, c.mu)
     normal = -e * before[2]
-    turn = cross(at.r, rotate_back(*now.q, *given))
+    turn = torque_of(at, given)
     store_omega(y, plus(now.omega, apply(c.inverse, turn)))
     store_u(y, plus(now.u, scaled(1.0 / c.mass, given)))
     y[STRUCK] += loss

@@ -21,10 +21,10 @@ from rigid_body_sim.integrators.equations.contact_views import (
 )
 from rigid_body_sim.mechanics.contact.forces import (
     Push,
-    along_body,
     posture,
     rolling_force,
     slipping_force,
+    torque_of,
 )
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.mechanics.contact.touch import above_flat, couples
@@ -94,7 +94,7 @@ def stage(c, weight, now):
             dx, dy = (now.slip[0] / pace, now.slip[1] / pace) if pace > 0.0 else (1.0, 0.0)
         f, growth, A = slipping_force(c, at, push, mu, dx, dy)
         firmness, slid = A * c.mass, mu * f[2] * pace
-    turning = cross(at.r, along_body(at.axes, f))
+    turning = torque_of(at, f)
     entries = Ledger(pace * slid, pace * c.rolling_viscous * speed * speed,
                      pace * film * speed * speed, 0.0, 0.0, 0.0,
                      scaled(pace, apply(at.axes, plus(turning, viscous))), 0.0)

@@ -54,7 +54,6 @@ from rigid_body_sim.integrators.equations.contact_views import (
 )
 from rigid_body_sim.mechanics.contact.forces import (
     Push,
-    along_body,
     held,
     leaving,
     patch_of,
@@ -62,6 +61,7 @@ from rigid_body_sim.mechanics.contact.forces import (
     rolling_force,
     slipping_force,
     system_of,
+    torque_of,
     wrung_by,
 )
 from rigid_body_sim.mechanics.contact.holding import (
@@ -403,15 +403,13 @@ def rate(p, y, k):
         along = along_way(c, at, way_at(c, now.time), speed) if HOLDS else speed
         motion = _motion(c, at, speed, along)
         torque = plus(contact.push.torque,
-                      plus(cross(at.r, along_body(at.axes, contact.f)),
-                           scaled(contact.f[2], contact.push.wrung)))
+                      plus(torque_of(at, contact.f), scaled(contact.f[2], contact.push.wrung)))
     grown = hastened(c, at, torque)
     touch = plus(contact.push.viscous, scaled(contact.f[2], contact.push.wrung))
     if HOLDS and c.mode != FLIGHT:
         holds, rolling = _gripped(c, at, torque, grown, contact.f[2])
         touch = plus(touch, holds)
-    turn = apply(at.axes, plus(plus(cross(at.r, along_body(at.axes, contact.f)), touch),
-                               minus(T, inner)))
+    turn = apply(at.axes, plus(plus(torque_of(at, contact.f), touch), minus(T, inner)))
     rolled = (c.rolling_viscous * contact.speed * contact.speed
               + c.rolling * contact.f[2] * along)
     entries = Ledger(contact.slid, rolled, contact.film * contact.speed * contact.speed, 0.0,

@@ -14,6 +14,10 @@ variable of the phase: the time t, or where the body slides s with dt = P ds, P 
               I omega' = r x R^T g + h x w,  V = u - R c,  m V' = g + P F
     GLIDING   SLIDING with P = 1 and mu = 0
 
+The part of r x f by what is along gamma, N and the weight, goes with r x gamma, of which the part
+of r along gamma has been left out (scene/surfaces.py: tilted): its rounding would be much beside a
+small friction.
+
 Viscous rolling friction and a film of air add a couple to I omega'. In each phase of contact, with
 S = dr/dgamma (scene/surfaces.py), it and its heat are
 
@@ -57,7 +61,7 @@ from rigid_body_sim.integrators.equations.contact_views import SLIDING, UNKNOWNS
 from rigid_body_sim.mechanics.contact.forces import posture
 from rigid_body_sim.mechanics.contact.parameters import CONTACT
 from rigid_body_sim.numerics.vectors import (
-    apply, cross, dot, minus, plus, product, scaled, transposed)
+    apply, cross, dot, minus, plus, product, scaled)
 from rigid_body_sim.scene.painleve import inverse_of
 from rigid_body_sim.scene.surfaces import TINY
 
@@ -92,6 +96,8 @@ sigma = math.sqrt(dot(e3, pulled))
 inverse_sigma = 1.0 / sigma
 half_sigma = 0.5 * inverse_sigma
 over = scaled(inverse_sigma, pulled)
+a, b, d = c.size
+differs = (b - d) * (b + d) / (b * b), (d - a) * (d + a) / (d * d), (a - b) * (a + b) / (a * a)
 """, TORUS: """
 across = math.sqrt(e3[0] * e3[0] + e3[1] * e3[1]) + TINY
 inverse_across = 1.0 / across
@@ -116,8 +122,8 @@ if c.mode == SLIDING:
 v = u[0] - dot(e1, carried), u[1] - dot(e2, carried)
 # what N = 1 does
 unit = (-mu * u[0], -mu * u[1], pace)
-pushed = apply(transposed(at.axes), unit)
-wrung = cross(r, pushed)
+pushed = plus(scaled(unit[0], e1), scaled(unit[1], e2))
+wrung = plus(cross(r, pushed), scaled(pace, at.tilting))
 spun = apply(c.inverse, wrung)
 swung = cross(spun, r)
 rolled = apply(at.axes, swung)
@@ -338,6 +344,20 @@ def _lever(made, kind, gamma):
     return made.vector('r', [f'-c.size[0] * {one.now}' for one in gamma]), None
 
 
+def _tilting(made, kind, gamma, outline):
+    """Return the Parts of r x gamma, given what `_lever` returns."""
+    texts = [f'c.middle[{i}] * {gamma[j].now} - c.middle[{j}] * {gamma[i].now}' for i, j in CYCLE]
+    if kind == ELLIPSOID:
+        over, _ = outline
+        texts = [f'{text} - differs[{n}] * ({made.product(over[i], gamma[j])})'
+                 for n, (text, (i, j)) in enumerate(zip(texts, CYCLE, strict=True))]
+    if kind == TORUS:
+        (x, y), _ = outline
+        texts[0] += f' - c.size[0] * ({made.product(y, gamma[2])})'
+        texts[1] += f' + c.size[0] * ({made.product(x, gamma[2])})'
+    return made.vector('at.tilting', texts)
+
+
 def _dual(made, kind, sharp, gamma, moved, outline):
     """Return the names of d, in the order k - 1; `moved` are those of r'."""
     if kind == ELLIPSOID:
@@ -450,12 +470,13 @@ def rolling(kind, friction):
     before = made.late(carried)
     turned = made.crossed(SPIN, before)
     weight = [' + '.join(f'{force} * {late}' for force, late in zip(
-        ('Fx', 'Fy', 'Fz'), made.late(column), strict=True)) for column in zip(*axes, strict=True)]
-    # f without what the coefficient k of omega does, then with it
+        ('Fx', 'Fy'), made.late(column), strict=True)) for column in zip(*axes[:2], strict=True)]
+    tilting = made.late(_tilting(made, kind, axes[2], outline))
+    # f without what the coefficient k of omega does and the weight along gamma, then with both
     known = [made.let(f'-(c.mass * (k * {one} + {other}) + {down})')
              for one, other, down in zip(part, turned, weight, strict=True)]
-    torque = [made.let(text + more)
-              for text, more in zip(made.crossed(r, known), couple, strict=True)]
+    torque = [made.let(f'{text} - Fz * {tilt}{more}') for text, tilt, more in zip(
+        made.crossed(r, known), tilting, couple, strict=True)]
     gyro = [made.let(text) for text in made.crossed(UNEVEN, w)]
     omega = made.put('omega', _halved(_transformed(
         'solved', [f'({one} + {other})' for one, other in zip(torque, gyro, strict=True)])))
@@ -463,8 +484,10 @@ def rolling(kind, friction):
     grown = [made.let(text) for text in _grown(omega)]
     made.put('c', [f'{one} + {more}' for one, more in zip(part, grown, strict=True)])
     push = [made.let(f'-c.mass * k * {more}') for more in grown]
-    force = [made.let(f'{one} + {more}') for one, more in zip(known, push, strict=True)]
-    made.replace(dict(zip(known, force, strict=True)))
+    along = [made.let(f'{one} + {more}') for one, more in zip(known, push, strict=True)]
+    made.replace(dict(zip(known, along, strict=True)))
+    force = [made.let(f'{one} - Fz * {down}')
+             for one, down in zip(along, made.late(axes[2]), strict=True)]
     whole = [made.let(f'{torque[n]} + r[{i}] * {push[j]} - r[{j}] * {push[i]}')
              for n, (i, j) in enumerate(CYCLE)]
     normal = made.let(made.summed(axes[2], force, made.before))
@@ -494,9 +517,11 @@ def sliding(kind, friction):
     # all that follows from g without the coefficient of N, then with it
     pressed = [made.column(one.now, 'normal')[0] for one in (*u, pace)]
     g = [made.let(text) for text in (f'-mu * {pressed[0]}', f'-mu * {pressed[1]}', pressed[2])]
-    force = [made.let(made.summed(column, g, made.before)) for column in zip(*axes, strict=True)]
-    torque = [made.let(text + more)
-              for text, more in zip(made.crossed(r, force), couple, strict=True)]
+    tilting = _tilting(made, kind, axes[2], outline)
+    rubs = [made.let(made.summed(column, g[:2], made.before))
+            for column in zip(*axes[:2], strict=True)]
+    torque = [made.let(f'{text} + {made.before(tilt, g[2])}{more}') for text, tilt, more in zip(
+        made.crossed(r, rubs), tilting, couple, strict=True)]
     gyro = made.crossed(UNEVEN, w)
     spun = [made.let(text) for text in _halved(_transformed('c.inverse', [
         made.let(f'{one} + {other}') for one, other in zip(torque, gyro, strict=True)]))]
@@ -507,7 +532,7 @@ def sliding(kind, friction):
     made.lines.append(f'normal = -(lightness * ({g[2]} + {late_pace} * Fz) + k * {rolled[2]}) '
                       '* yielding')
     found = {}
-    for name, parts, share in (('unit', g, ''), ('pushed', force, ''), ('wrung', torque, ''),
+    for name, parts, share in (('unit', g, ''), ('pushed', rubs, ''), ('wrung', torque, ''),
                                ('spun', spun, 'share * '), ('swung', carried, 'share * '),
                                ('rolled', rolled, 'share * ')):
         for i, one in enumerate(parts):

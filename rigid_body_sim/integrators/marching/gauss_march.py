@@ -119,9 +119,9 @@ CANCELLED = 2.0 ** -57    # share of cancelling terms that a step need not resol
 FALL_7, FALL_75, FALL_64, UNSEEN = 26.0, 26.0 * 22.0, 22.0 * 18.0, 3.8e-12
 # largest x, half the angle of a step: beyond it substitution takes too many sweeps
 LONGEST = 3.5
-# share of the tolerance that the curve may err by: after a step over the end of a pulse it errs by
-# its last coefficient, and the steps themselves by far less than is allowed
-OF_CURVE = 2.0 ** -7
+# share of the tolerance that a state between points may err by: the points themselves err by far
+# less than is allowed. A curve errs by its last coefficient, a shorter step by its last sweep.
+BETWEEN_POINTS = 2.0 ** -7
 ENOUGH = 0.03            # share of the allowed change: after one so small a sweep less would do
 
 
@@ -455,13 +455,13 @@ def between(p, control, point, following, dt):
             _lay_curve(S, point, following, h)
             highest = end_of_curve(S)
             S[TAIL] = math.sqrt(measure(highest, highest, 0.0, scales))
-        if S[TAIL] <= max(OF_CURVE * control[TOLERANCE] * h, ROUNDING):
+        if S[TAIL] <= max(BETWEEN_POINTS * control[TOLERANCE] * h, ROUNDING):
             return along(S, y, dt / h)
     _take_rates(point, S)
     sweeps = max(1, int(dt / last * point[SWEEPS])) if last > 0.0 else 1
     pull = _pull(control, dt, scales)
-    mean, _, _, converged = solve(
-        p, S, y, dt, last, sweeps, control[TOLERANCE] * dt, pull, scales)
+    allowed = BETWEEN_POINTS * control[TOLERANCE] * dt
+    mean, _, _, converged = solve(p, S, y, dt, last, sweeps, allowed, pull, scales)
     if not converged:
         return _within(S, following, dt / h)
     y, _ = advanced(y, mean, load(point, VALUES + SIZE), dt)

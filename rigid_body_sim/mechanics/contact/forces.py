@@ -12,7 +12,7 @@ from rigid_body_sim.compilation.jit import compiled, inlined
 from rigid_body_sim.compilation.layout import Matrix, Quaternion, Vector
 from rigid_body_sim.mechanics.contact.laws import System, departure, sticking
 from rigid_body_sim.mechanics.contact.patch import patch_sticking, patch_system
-from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning
+from rigid_body_sim.mechanics.contact.touch import grips, lever, response, spinning, swept, tilting
 from rigid_body_sim.numerics.functions import hypot
 from rigid_body_sim.numerics.rotations import matrix
 from rigid_body_sim.numerics.vectors import apply, cross, dot, minus, plus, scaled
@@ -32,6 +32,8 @@ class Posture(NamedTuple):
         e1, e2, e3 along the axes of the body.
     r : Vector
         From the centre of mass to the lowest point, m.
+    tilting : Vector
+        r x e3, of which the part of r along e3 has been left out, not rounded off, m.
     carried : Vector
         omega x r, m/s.
     moved : Vector
@@ -48,6 +50,7 @@ class Posture(NamedTuple):
     omega: Vector
     axes: Matrix
     r: Vector
+    tilting: Vector
     carried: Vector
     moved: Vector
     drawn: Vector
@@ -89,14 +92,25 @@ def standing(c, q, omega, axes, r):
     """Return the Posture of a body whose lowest point is at r."""
     carried = cross(omega, r)
     moved = shifted(c.kind, c.size, axes[2], cross(axes[2], omega))
-    drawn = plus(cross(omega, carried), cross(omega, moved))
-    return Posture(q, omega, axes, r, carried, moved, drawn, c.inverse, (0.0, 0.0, 0.0))
+    drawn = cross(omega, swept(c, axes[2], omega))
+    return Posture(q, omega, axes, r, tilting(c, axes[2]), carried, moved, drawn, c.inverse,
+                   (0.0, 0.0, 0.0))
 
 
 @inlined
 def along_body(axes, f):
     """Return a vector along the axes of the plane as one along those of the body."""
     return plus(scaled(f[0], axes[0]), plus(scaled(f[1], axes[1]), scaled(f[2], axes[2])))
+
+
+@inlined
+def torque_of(at, f):
+    """Return the couple about the centre of mass, body axes, of a force f at the lowest point.
+
+    The force is along the axes of the plane.
+    """
+    e1, e2, _ = at.axes
+    return plus(cross(at.r, plus(scaled(f[0], e1), scaled(f[1], e2))), scaled(f[2], at.tilting))
 
 
 @inlined
@@ -115,13 +129,15 @@ def driven(c, at, push):
 @inlined
 def system_of(c, at, push):
     """Return the System."""
-    return System(response(c.mass, at.inverse, at.axes, at.r, push.wrung), driven(c, at, push))
+    pressed = plus(at.tilting, push.wrung)
+    return System(response(c.mass, at.inverse, at.axes, at.r, pressed), driven(c, at, push))
 
 
 @inlined
 def patch_of(c, at, push):
     """Return the Patch of a body with a patch of contact."""
-    turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque, push.wrung)
+    turned, twisted, spun = spinning(at.inverse, at.axes, at.r, push.torque,
+                                     plus(at.tilting, push.wrung))
     if grips(c):
         spun = spun[0] + dot(at.axes[2], at.shift), spun[1]
     return patch_system(system_of(c, at, push), turned, twisted, spun, c.patch)
@@ -136,9 +152,8 @@ def rolling_force(c, at, push):
     F).
     """
     r = at.r
-    A = scaled(-1.0, cross(at.omega, plus(at.carried, at.moved)))
-    net = minus(scaled(c.mass, A), along_body(at.axes, push.force))
-    x, y, z = plus(push.torque, cross(r, net))
+    net = scaled(-c.mass, at.drawn)    # m A
+    x, y, z = minus(plus(push.torque, cross(r, net)), torque_of(at, push.force))
     square = c.mass * dot(r, r)
     (a, b, d), (_, e, g), (_, _, h) = c.inertia
     mx, my, mz = scaled(c.mass, r)
@@ -150,21 +165,18 @@ def rolling_force(c, at, push):
     share = 1.0 / (a * aa + b * bb + d * dd)
     grown = (share * (aa * x + bb * y + dd * z), share * (bb * x + ee * y + gg * z),
              share * (dd * x + gg * y + hh * z))
-    return apply(at.axes, minus(net, scaled(c.mass, cross(grown, r))))
+    return minus(apply(at.axes, minus(net, scaled(c.mass, cross(grown, r)))), push.force)
 
 
 @inlined
 def slipping_force(c, at, push, mu, dx, dy):
     """Return (f, u', A) of a slip along d (laws.slipping, for one force)."""
-    e1, e2, e3 = at.axes
-    b = driven(c, at, push)
-    pressed = minus(e3, plus(scaled(mu * dx, e1), scaled(mu * dy, e2)))
-    moved = plus(scaled(1.0 / c.mass, pressed),
-                 cross(apply(at.inverse, plus(cross(at.r, pressed), push.wrung)), at.r))
-    A = dot(e3, moved)
-    N = -b[2] / A
-    return ((-mu * N * dx, -mu * N * dy, N),
-            (b[0] + N * dot(e1, moved), b[1] + N * dot(e2, moved), 0.0), A)
+    b, lightness, unit = driven(c, at, push), 1.0 / c.mass, (-mu * dx, -mu * dy, 1.0)
+    couple = plus(torque_of(at, unit), push.wrung)
+    moved = plus(scaled(lightness, unit), apply(at.axes, cross(apply(at.inverse, couple), at.r)))
+    N = -b[2] / moved[2]
+    return ((N * unit[0], N * unit[1], N), (b[0] + N * moved[0], b[1] + N * moved[1], 0.0),
+            moved[2])
 
 
 @compiled

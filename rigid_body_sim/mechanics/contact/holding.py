@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.jit import compiled, inlined
 from rigid_body_sim.compilation.layout import Vector
-from rigid_body_sim.mechanics.contact.forces import Posture, along_body
+from rigid_body_sim.mechanics.contact.forces import Posture, along_body, torque_of
 from rigid_body_sim.mechanics.contact.parameters import HELD, SLOW
 from rigid_body_sim.mechanics.contact.touch import (
     above_flat,
@@ -75,7 +75,7 @@ def gripped(c, at):
         share = 1.0 / dot(gamma, apply(c.inertia, gamma))
         inverse = (scaled(share * gamma[0], gamma), scaled(share * gamma[1], gamma),
                    scaled(share * gamma[2], gamma))
-    return Posture(at.q, at.omega, at.axes, at.r, at.carried, moved,
+    return Posture(at.q, at.omega, at.axes, at.r, at.tilting, at.carried, moved,
                    plus(drawn, cross(shift, at.r)), inverse, shift)
 
 
@@ -236,7 +236,7 @@ def holds_still(c, at, F, T):
     far = math.sqrt(dot(at.r, at.r))
     if abs(dot(at.omega, gamma)) * far > SPINLESS * c.swift:
         return False
-    couple = scaled(-1.0, plus(T, cross(at.r, along_body(at.axes, held))))
+    couple = scaled(-1.0, plus(T, torque_of(at, held)))
     if abs(dot(couple, gamma)) > 1e-12 * held[2] * far:
         return False
     return hypot(*against(c, at, couple)) <= c.rolling * held[2]

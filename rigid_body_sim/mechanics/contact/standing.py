@@ -5,10 +5,10 @@ import math
 
 from rigid_body_sim.mechanics.contact.forces import (
     Push,
-    along_body,
     patch_of,
     standing,
     system_of,
+    torque_of,
 )
 from rigid_body_sim.mechanics.contact.holding import (
     across_rim,
@@ -158,7 +158,7 @@ class Standing:
 
     def _turned(self, stands, acts, f, touch):
         """Return the couple about the centre of mass, and omega'."""
-        torque = plus(plus(acts[1], touch), cross(stands.r, along_body(stands.axes, f)))
+        torque = plus(plus(acts[1], touch), torque_of(stands, f))
         return torque, plus(apply(stands.inverse, torque), stands.shift)
 
     def _exerted(self, c, stands, acts, slip):

@@ -12,13 +12,37 @@ import math
 from rigid_body_sim.compilation.jit import inlined
 from rigid_body_sim.mechanics.contact.parameters import FILMY, FLAT, FLATTER, HELD
 from rigid_body_sim.numerics.vectors import apply, cross, dot, plus, scaled
-from rigid_body_sim.scene.surfaces import TINY, TORUS, lowest, shifted
+from rigid_body_sim.scene.surfaces import ELLIPSOID, TINY, TORUS, lowest, shifted, tilted
 
 
 @inlined
 def lever(c, gamma):
     """Return r, from the centre of mass to the lowest point, body axes."""
     return plus(c.middle, lowest(c.kind, c.size, gamma))
+
+
+@inlined
+def tilting(c, gamma):
+    """Return r x gamma, body axes: the couple about the centre of mass over a normal force, m."""
+    return plus(cross(c.middle, gamma), tilted(c.kind, c.size, gamma))
+
+
+@inlined
+def swept(c, gamma, omega):
+    """Return omega x r + r', m/s: how the lowest point moves in space beside the centre of mass.
+
+    The middle of a ball, or of the tube of a torus, stays above it: the rest of r is left out,
+    since its two parts would leave their rounding.
+    """
+    core, turn = c.middle, cross(gamma, omega)
+    if c.kind == ELLIPSOID:
+        core = plus(core, lowest(c.kind, c.size, gamma))
+        return plus(cross(omega, core), shifted(c.kind, c.size, gamma, turn))
+    if c.kind == TORUS:
+        ring = c.size[0], 0.0, 0.0
+        core = plus(core, lowest(c.kind, ring, gamma))
+        return plus(cross(omega, core), shifted(c.kind, ring, gamma, turn))
+    return cross(omega, core)
 
 
 @inlined
@@ -73,35 +97,36 @@ def tangent(gamma):
 
 
 @inlined
-def response(mass, inverse, axes, r, wrung):
+def response(mass, inverse, axes, r, pressed):
     """Return the matrix of a System.
 
     Parameters
     ----------
     inverse : Matrix
         How a couple changes omega, body axes, 1/(kg m^2).
-    wrung : Vector
-        The couple that goes with N, over N, body axes, m.
+    pressed : Vector
+        All couples that go with N, over N: r x e3 and those of friction, body axes, m.
     """
-    e1, e2, e3 = axes
-    g1 = plus(scaled(1.0 / mass, e1), cross(apply(inverse, cross(r, e1)), r))
-    g2 = plus(scaled(1.0 / mass, e2), cross(apply(inverse, cross(r, e2)), r))
-    g3 = plus(scaled(1.0 / mass, e3), cross(apply(inverse, plus(cross(r, e3), wrung)), r))
-    return ((dot(e1, g1), dot(e1, g2), dot(e1, g3)), (dot(e1, g2), dot(e2, g2), dot(e2, g3)),
-            (dot(e3, g1), dot(e3, g2), dot(e3, g3)))
+    (e1, e2, e3), lightness = axes, 1.0 / mass
+    g1 = cross(apply(inverse, cross(r, e1)), r)
+    g2 = cross(apply(inverse, cross(r, e2)), r)
+    g3 = cross(apply(inverse, pressed), r)
+    return ((lightness + dot(e1, g1), dot(e1, g2), dot(e1, g3)),
+            (dot(e1, g2), lightness + dot(e2, g2), dot(e2, g3)),
+            (dot(e3, g1), dot(e3, g2), lightness + dot(e3, g3)))
 
 
 @inlined
-def spinning(inverse, axes, r, torque, wrung):
+def spinning(inverse, axes, r, torque, pressed):
     """Return arguments of `patch_system`: how forces and couples about the normal spin a body.
 
-    `inverse` and `wrung` are those of `response`; `torque` is without that of the contact, body
+    `inverse` and `pressed` are those of `response`; `torque` is without that of the contact, body
     axes.
     """
     e1, e2, e3 = axes
     along = apply(inverse, e3)
     turned = (dot(along, cross(r, e1)), dot(along, cross(r, e2)),
-              dot(along, plus(cross(r, e3), wrung)))
+              dot(along, pressed))
     return turned, apply(axes, cross(along, r)), (dot(along, torque), dot(along, e3))
 
 

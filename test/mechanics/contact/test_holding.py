@@ -24,7 +24,7 @@ from rigid_body_sim.mechanics.contact.holding import (
     way_out,
 )
 from rigid_body_sim.mechanics.contact.parameters import HELD
-from rigid_body_sim.mechanics.contact.touch import lever, tangent
+from rigid_body_sim.mechanics.contact.touch import lever, tangent, tilting
 from rigid_body_sim.scene.surfaces import shifted
 
 ROLLS = ', sliding_friction: {mu: 0.3}, rolling_friction: {dry: 0.01}'
@@ -51,7 +51,8 @@ def test_friction_goes_to_zero_with_the_rolling_against_which_it_acts(share):
 def posture(c, rows, omega=(0.0, 0.0, 0.0), moved=(0.1, -0.2, 0.3), drawn=(1.0, 2.0, -3.0)):
     r = lever(c, rows[2])
     return types.SimpleNamespace(q=(0.0, 0.0, 0.0, 1.0), axes=rows, omega=omega, r=r,
-                                 carried=tuple(np.cross(omega, r)), moved=moved, drawn=drawn)
+                                 tilting=tilting(c, rows[2]), carried=tuple(np.cross(omega, r)),
+                                 moved=moved, drawn=drawn)
 
 
 @pytest.mark.parametrize('surface', SURFACES)

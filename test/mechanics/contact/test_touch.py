@@ -2,6 +2,7 @@
 """The point of contact: how a force there moves it, and the couples of rolling friction."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -21,8 +22,11 @@ from rigid_body_sim.mechanics.contact.touch import (
     lever,
     response,
     spinning,
+    swept,
     tangent,
+    tilting,
 )
+from rigid_body_sim.numerics.vectors import plus
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.scene.surfaces import shifted
 
@@ -72,12 +76,48 @@ def test_the_lever_is_the_lowest_point_of_the_surface(surface, seed):
     assert point @ down < (points @ down).max() + 2e-3
 
 
+@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('surface', SURFACES)
+def test_a_normal_force_tilts_a_body_by_its_lever(surface, seed):
+    """That of a ball about its middle is none, not the rounding of products."""
+    c, gamma = parameters(surface), axes(seed)[2]
+    assert tilting(c, gamma) == pytest.approx(np.cross(lever(c, gamma), gamma), abs=1e-16)
+    about_middle = tilting(c._replace(middle=(0.0, 0.0, 0.0)), gamma)
+    assert (about_middle == (0.0, 0.0, 0.0)) == (surface == 'sphere')
+
+
+def test_the_lever_of_a_normal_force_is_as_exact_as_the_axes_differ():
+    """An ellipsoid that is nearly a ball, by 1e-12: of products half of the digits were left."""
+    c, gamma = parameters('ellipsoid'), (0.6, 0.64, 0.48)
+    c = c._replace(size=(0.2 + 2.0 ** -40, 0.2, 0.2), middle=(0.0, 0.0, 0.0))
+    a, b, _ = map(Fraction, c.size)
+    x, y, z = map(Fraction, gamma)
+    sigma = math.sqrt(a * a * x * x + b * b * (y * y + z * z))
+    expected = 0.0, (a * a - b * b) * z * x / sigma, (b * b - a * a) * x * y / sigma
+    assert tilting(c, gamma) == near([float(one) for one in expected], rel=1e-15)
+
+
+@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('surface', SURFACES)
+def test_the_lowest_point_moves_in_space_as_the_body_turns_and_over_its_surface(surface, seed):
+    """Below the middle of a ball it stays, not but for the rounding of its two motions."""
+    c, gamma, omega = parameters(surface), axes(seed)[2], (3.0, -2.0, 5.0)
+    moved = shifted(c.kind, c.size, gamma, tuple(np.cross(gamma, omega)))
+    expected = np.cross(omega, lever(c, gamma)) + moved
+    assert swept(c, gamma, omega) == pytest.approx(expected, abs=2e-15)
+    about_middle = swept(c._replace(middle=(0.0, 0.0, 0.0)), gamma, omega)
+    assert (about_middle == (0.0, 0.0, 0.0)) == (surface == 'sphere')
+    if surface == 'torus':    # its tube has no part in it
+        assert swept(c._replace(size=(0.2, 0.07, 0.0)), gamma, omega) == swept(c, gamma, omega)
+
+
 @pytest.mark.parametrize('seed', range(4))
 def test_the_response_is_how_a_force_accelerates_the_point(seed):
     """G f = f/m + (I^-1 (r x f)) x r, along the axes of the plane; with N goes a couple."""
     c, rows = parameters('ellipsoid'), axes(seed)
     r, wrung = lever(c, rows[2]), (0.01, -0.02, 0.03)
-    G = np.array(response(c.mass, c.inverse, rows, r, wrung))
+    pressed = plus(tilting(c, rows[2]), wrung)
+    G = np.array(response(c.mass, c.inverse, rows, r, pressed))
     E, inverse = np.array(rows), np.linalg.inv(np.array(c.inertia))
     for k in range(3):
         torque = np.cross(r, E[k]) + (np.array(wrung) if k == 2 else 0.0)
@@ -158,7 +198,8 @@ def test_a_patch_is_told_how_forces_and_couples_spin_the_body(seed):
     c, rows = parameters('ellipsoid'), axes(seed)
     r, wrung, torque = np.array(lever(c, rows[2])), (0.01, -0.02, 0.03), (0.5, -0.2, 0.7)
     E, inverse = np.array(rows), np.linalg.inv(np.array(c.inertia))
-    turned, moved, (driven, stiff) = spinning(c.inverse, rows, tuple(r), torque, wrung)
+    turned, moved, (driven, stiff) = spinning(
+        c.inverse, rows, tuple(r), torque, plus(tilting(c, rows[2]), wrung))
     for k in range(3):
         couple = np.cross(r, E[k]) + (np.array(wrung) if k == 2 else 0.0)
         assert turned[k] == near(E[2] @ inverse @ couple, rel=1e-12)
