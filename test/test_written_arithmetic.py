@@ -27,7 +27,7 @@ CORRECT = {
           'empty_like errstate eye finfo flatnonzero float64 floor frexp frombuffer fromiter full '
           'inf int64 intp isfinite isnan maximum minimum nan ndarray newaxis nonzero ones '
           'ones_like outer prod random ravel repeat reshape roll searchsorted sort sqrt square '
-          'stack tile uint8 uint32 uint64 unique where zeros'}
+          'stack tile uint8 uint32 uint64 union1d unique where zeros'}
 CORRECT = {module: set(names.split()) for module, names in CORRECT.items()}
 LIBRARIES = ('scipy', 'mpmath', 'cmath', 'statistics', 'sympy')
 REDUCTIONS = ('dot', 'mean', 'std', 'var', 'trace')

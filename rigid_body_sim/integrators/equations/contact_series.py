@@ -516,11 +516,13 @@ def sliding(kind, friction):
     part = [made.let(text) for text in _carried(made, r)]
     # all that follows from g without the coefficient of N, then with it
     pressed = [made.column(one.now, 'normal')[0] for one in (*u, pace)]
-    g = [made.let(text) for text in (f'-mu * {pressed[0]}', f'-mu * {pressed[1]}', pressed[2])]
+    *along, across = g = [
+        made.let(text) for text in (f'-mu * {pressed[0]}', f'-mu * {pressed[1]}', pressed[2])]
     tilting = _tilting(made, kind, axes[2], outline)
-    rubs = [made.let(made.summed(column, g[:2], made.before))
-            for column in zip(*axes[:2], strict=True)]
-    torque = [made.let(f'{text} + {made.before(tilt, g[2])}{more}') for text, tilt, more in zip(
+    e1, e2, _ = axes
+    rubs = [made.let(made.summed(column, along, made.before))
+            for column in zip(e1, e2, strict=True)]
+    torque = [made.let(f'{text} + {made.before(tilt, across)}{more}') for text, tilt, more in zip(
         made.crossed(r, rubs), tilting, couple, strict=True)]
     gyro = made.crossed(UNEVEN, w)
     spun = [made.let(text) for text in _halved(_transformed('c.inverse', [
@@ -529,7 +531,7 @@ def sliding(kind, friction):
                for one, more in zip(part, _grown(spun), strict=True)]
     of_c = [Part(f'carried[{i}]', one) for i, one in enumerate(carried)]
     rolled = [made.let(made.summed(row, of_c, made.product)) for row in axes]
-    made.lines.append(f'normal = -(lightness * ({g[2]} + {late_pace} * Fz) + k * {rolled[2]}) '
+    made.lines.append(f'normal = -(lightness * ({across} + {late_pace} * Fz) + k * {rolled[2]}) '
                       '* yielding')
     found = {}
     for name, parts, share in (('unit', g, ''), ('pushed', rubs, ''), ('wrung', torque, ''),
@@ -540,13 +542,13 @@ def sliding(kind, friction):
     made.replace(found)
     omega = made.put('omega', [found[one] for one in spun])
     made.put('h', _transformed('c.uneven', omega))
-    made.put('u', [f'share * lightness * ({found[g[i]]} + {late_pace} * {weight}) + '
-                   f'{found[rolled[i]]}' for i, weight in enumerate(('Fx', 'Fy'))])
+    made.put('u', [f'share * lightness * ({found[one]} + {late_pace} * {weight}) + {found[turn]}'
+                   for one, turn, weight in zip(along, rolled, ('Fx', 'Fy'), strict=False)])
     root = made.root(made.summed(u, u, made.product), 'pace', 'half_pace')
     made.lines.append(f'pace_k = {root.now}')
     velocity = made.vector('v', [f'u{i} - {found[rolled[i]]}' for i in range(2)])
     moved = _halved(made.before(pace, one) for one in made.late(velocity))
-    heat = f'share * mu * ({made.before(pace, found[g[2]])})'
+    heat = f'share * mu * ({made.before(pace, found[across])})'
     impulse = _halved(made.summed(row, [found[one] for one in torque], made.before)
                       for row in axes)
     _watch(made, kind, 'normal', None, outline)
