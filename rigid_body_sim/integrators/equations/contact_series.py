@@ -469,8 +469,9 @@ def rolling(kind, friction):
     carried = [Part(f'carried[{i}]', f'c{i}') for i in range(3)]
     before = made.late(carried)
     turned = made.crossed(SPIN, before)
+    e1, e2, _ = axes
     weight = [' + '.join(f'{force} * {late}' for force, late in zip(
-        ('Fx', 'Fy'), made.late(column), strict=True)) for column in zip(*axes[:2], strict=True)]
+        ('Fx', 'Fy'), made.late(column), strict=True)) for column in zip(e1, e2, strict=True)]
     tilting = made.late(_tilting(made, kind, axes[2], outline))
     # f without what the coefficient k of omega does and the weight along gamma, then with both
     known = [made.let(f'-(c.mass * (k * {one} + {other}) + {down})')
