@@ -112,6 +112,7 @@ initial: {}
 """
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('heat', ['', 'drag: {linear: 0, angular: 1e-6},'])
 def test_a_rate_that_torques_give_and_take_between_looks_leaves_its_rounding(heat):
     """It is 9.77 rad/s for an eighth of a second, and turns the body on by half an ulp of it.

@@ -21,6 +21,7 @@ def test_case(case):
     judge(case)
 
 
+@pytest.mark.without_numba
 def test_stepped_motion_comes_back_by_symmetric_compositions():
     """N steps forward and N back by split4 return to round-off.
 

@@ -56,6 +56,7 @@ def test_states_between_nodes_are_as_good_as_nodes(top, method, control):
     assert max(angle_between(*a[1:5], *b[1:5]) for a, b in pairs) < 1e-13
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('tolerance', [2.0 ** -15, 2.0 ** -18, 2.0 ** -22])
 def test_states_between_nodes_err_no_more_than_nodes_at_coarse_tolerances(tolerance):
     """Where the last sweep of a shorter step changed all that it may err by, 3 to 4.5 times more.

@@ -451,6 +451,7 @@ def test_a_body_has_the_closed_form_of_a_scene_nearly_its_own_where_that_meets_t
     assert (told <= 1e-10).all()
 
 
+@pytest.mark.without_numba
 def test_expected_errors_that_nothing_tells_are_refused():
     starts = [State.of(angular_velocity=(0.0, 5.0, 0.1))]
     whole = ensemble('tennis_racket', starts, [1.0])

@@ -121,8 +121,10 @@ def test_inertia_by_quadrature_and_by_a_blow(capsys):
     ('module', 'function', 'wrong', 'scene', 'quantity'),
     [(symmetric_top, 'precession_rate', symmetric_top.precession_rate_as_written, 'symmetric_top',
       'Omega of omega round e3 in the body'),
-     (kater_pendulum, 'moment_about_suspension', kater_pendulum.moment_about_suspension_as_written,
-      'kater_pendulum', 'I_Q = M g l/Omega^2'),
+     pytest.param(
+         kater_pendulum, 'moment_about_suspension',
+         kater_pendulum.moment_about_suspension_as_written, 'kater_pendulum',
+         'I_Q = M g l/Omega^2', marks=pytest.mark.without_numba),
      (heavy_top, 'curvature', heavy_top.curvature_at_equilibrium, 'heavy_top',
       "V_eff'' off equilibrium, at 0.5219 rad"),
      (kater_pendulum, 'frequency_from_q', lambda g, length, a: np.sqrt(g / (length**2 + a**2)),

@@ -105,6 +105,7 @@ def test_checkpoints_are_thinned_and_still_right(top):
     assert np.array_equal(late, again)
 
 
+@pytest.mark.without_numba
 def test_states_are_continuous_at_the_nodes(top):
     times = np.linspace(0.0, 0.02, 20001)
     out = np.empty((20001, 14))
