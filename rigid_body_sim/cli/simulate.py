@@ -14,7 +14,7 @@ import numpy as np
 from tqdm import tqdm
 
 from rigid_body_sim import command_line
-from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.choice.choice import HORIZON
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.messages import state_topics
 from rigid_body_sim.messages.timeline import Timeline

@@ -8,7 +8,7 @@ import concurrent.futures
 
 from std_srvs.srv import SetBool, Trigger
 
-from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.choice.choice import HORIZON
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.messages import robot_description, state_topics
 from rigid_body_sim.node.commands import Commands

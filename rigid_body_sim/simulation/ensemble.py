@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
-from rigid_body_sim.choice.choose import HORIZON, Choice, choose
+from rigid_body_sim.choice.choice import HORIZON, Choice
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.choice.rounding import of_bodies
 from rigid_body_sim.compilation.lanes import LANES
 from rigid_body_sim.compilation.threads import on_all_cores

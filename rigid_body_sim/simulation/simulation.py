@@ -19,7 +19,8 @@ import typing
 
 import numpy as np
 
-from rigid_body_sim.choice.choose import HORIZON, choose, methods_for
+from rigid_body_sim.choice.choice import HORIZON
+from rigid_body_sim.choice.choose import choose, methods_for
 from rigid_body_sim.choice.forecast import missed
 from rigid_body_sim.errors import BadInput, Ended, NotConverged
 from rigid_body_sim.mechanics import energy, impulse, parameters

@@ -30,7 +30,7 @@ class Strikes:
         Parameters
         ----------
         spans : list of Span
-        choice : choice.choose.Choice
+        choice : choice.choice.Choice
             Makes the solvers.
 
         Raises

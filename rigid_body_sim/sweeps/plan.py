@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rigid_body_sim.choice.choose import HORIZON, choose
+from rigid_body_sim.choice.choice import HORIZON
+from rigid_body_sim.choice.choose import choose
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.integrators import METHODS
 from rigid_body_sim.motions import MOTIONS, absorbing_motion

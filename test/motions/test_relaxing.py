@@ -14,7 +14,7 @@ import pytest
 import yaml
 from near import near
 
-from rigid_body_sim.choice.choose import Choice
+from rigid_body_sim.choice.choice import Choice
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.mechanics.events import watches
 from rigid_body_sim.motions import absorbing_motion

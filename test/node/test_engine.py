@@ -6,7 +6,7 @@ import types
 
 import pytest
 
-from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.choice.choice import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.node import engine as module
 from rigid_body_sim.node.engine import Engine

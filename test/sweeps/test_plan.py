@@ -9,7 +9,7 @@ import types
 import numpy as np
 import pytest
 
-from rigid_body_sim.choice.choose import HORIZON
+from rigid_body_sim.choice.choice import HORIZON
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.scene.scene import load_scene, parse_scene
 from rigid_body_sim.sweeps import plan as plans
