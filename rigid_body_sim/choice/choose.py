@@ -36,7 +36,7 @@ def _say_what_is_slow():
     """Warn once, in one line on stderr, what a missing numba costs."""
     if jit.numba is None:
         logging.getLogger('rigid_body_sim').warning(
-            'numba is not installed: the same bits, about a hundred times slower; '
+            'numba is not installed: the same bits, hundreds of times slower; '
             'pip install numba')
 
 
