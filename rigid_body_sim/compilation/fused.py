@@ -13,13 +13,10 @@ J.-M. Muller et al., Handbook of Floating-Point Arithmetic, 2nd ed. (2018), sect
 
 import math
 
-import numpy as np
-
 from rigid_body_sim.compilation.jit import HAVE_NUMBA, compiled_inline
 
 SPLITTER = 134217729.0                        # 2^27 + 1
 LEAST, MOST = 2.0 ** -900, 2.0 ** 990         # products and factors between split without loss
-FEW = 32                                      # fewer numbers are faster one by one
 
 
 def exact_fma(a, b, c):
@@ -38,7 +35,7 @@ def exact_fma(a, b, c):
 
 
 def _rounded(a, b, c, p):
-    """Return r, q and h: a b + c is r + q + h exactly, for doubles or arrays with a b = p rounded.
+    """Return r, q and h: a b + c is r + q + h exactly, for doubles with a b = p rounded.
 
     Exactly, a b = p + e, p + c = s + f and e + f = g + h, so a b + c = s + g + h. For h = 0 the
     sum s + g rounds once. Otherwise let s + g = r + q, r rounded: h is less than an ulp of g,
@@ -83,29 +80,6 @@ def guarded_fma(a, b, c):
 
 # the function that plain Python uses, also where kernels are compiled
 python_fma = guarded_fma if hasattr(math, 'fma') else emulated_fma
-
-
-def fma_array(a, b, c):
-    """Return a b + c, rounded once, elementwise for float64 arrays of one shape (plain Python)."""
-    if a.size <= FEW:
-        numbers = map(python_fma, a.ravel().tolist(), b.ravel().tolist(), c.ravel().tolist())
-        return np.array(list(numbers)).reshape(a.shape)
-    return _fma_array(a, b, c)
-
-
-def _fma_array(a, b, c):
-    """Return a b + c as emulated_fma does, but for whole arrays."""
-    with np.errstate(all='ignore'):
-        p = a * b
-        r, q, h = _rounded(a, b, c, p)
-        size = np.abs(p)
-        safe = (size >= LEAST) & (size <= MOST) & (np.abs(a) <= MOST) & (np.abs(b) <= MOST)
-        safe &= np.abs(c) <= MOST
-        safe &= (h == 0.0) | (np.abs(np.frexp(q)[0]) != 0.5)
-    if not safe.all():
-        for at in zip(*np.nonzero(~safe), strict=True):
-            r[at] = exact_fma(float(a[at]), float(b[at]), float(c[at]))
-    return r
 
 
 _fused = python_fma

@@ -11,7 +11,7 @@ from itertools import chain
 
 import numpy as np
 
-from rigid_body_sim.compilation.fused import fma_array, python_fma
+from rigid_body_sim.compilation.fused import python_fma
 from rigid_body_sim.compilation.jit import HAVE_NUMBA
 
 LANES = 8
@@ -46,7 +46,9 @@ class Plain:
     def gather(self, a, b, c):
         """Return a b + c, rounded once."""
         if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) or isinstance(c, np.ndarray):
-            return fma_array(*np.broadcast_arrays(a, b, c))
+            lanes = [one.tolist() if isinstance(one, np.ndarray) else [one] * LANES
+                     for one in (a, b, c)]
+            return np.array(list(map(python_fma, *lanes)))
         return python_fma(a, b, c)
 
     def everywhere(self, x):
@@ -71,7 +73,7 @@ class Plain:
 
     def load(self, array, at):
         """Return the eight numbers of an array that begin at a place."""
-        return array[at:at + LANES]
+        return np.asarray(array[at:at + LANES])
 
     def store(self, x, array, at):
         """Write one number into an array."""
