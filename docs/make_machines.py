@@ -20,7 +20,8 @@ HEAD = ('this machine stands for', 'digests', 'numeric tests', 'seconds', 'proce
 def section(rows, version):
     """Return the last section of the page."""
     old = sum(row.get('arithmetic', version) != version for row in rows)
-    about = ('A row is what `make test-machines` found when it last visited a machine.\n'
+    about = ('A row is what was found when a machine was last visited. A visit with `--digests`\n'
+             'runs no numeric tests (-).\n'
              'Visits share the processor with other work, so their times are upper bounds.')
     about += f'\nThe arithmetic is `{version}`' + (
         f' but for {old} rows, which are of the version that they\nname.' if old else '.')

@@ -67,9 +67,8 @@ class Stepped:
     accuracy : float, optional
         Error of the attitude (rad), and of omega relative to its largest size, that may build up
         in `horizon`, where the motion itself does not magnify it. An error of omega turns the body
-        on: a method that spends all that it may (gauss16) errs by up to as many times more as the
-        body turns by radians (a top of 20 rad/s in 20 s by 50 times). It has no effect where
-        `step` is given.
+        on, so the attitude of a fast body may err by some times more (a top that spins at 20 rad/s
+        for 20 s: 2 times by gauss16, 5 by dop8). It has no effect where `step` is given.
     step : float, optional
         Fixed step, s.
     wrench : effects.wrench.Wrench, optional

@@ -543,8 +543,9 @@ def sliding(kind, friction):
     made.replace(found)
     omega = made.put('omega', [found[one] for one in spun])
     made.put('h', _transformed('c.uneven', omega))
+    *rolls, _ = rolled
     made.put('u', [f'share * lightness * ({found[one]} + {late_pace} * {weight}) + {found[turn]}'
-                   for one, turn, weight in zip(along, rolled, ('Fx', 'Fy'), strict=False)])
+                   for one, turn, weight in zip(along, rolls, ('Fx', 'Fy'), strict=True)])
     root = made.root(made.summed(u, u, made.product), 'pace', 'half_pace')
     made.lines.append(f'pace_k = {root.now}')
     velocity = made.vector('v', [f'u{i} - {found[rolled[i]]}' for i in range(2)])
