@@ -207,14 +207,15 @@ class Case:
 
     def runs(self, duration, methods):
         """Yield (who, setting, act, attitude) from coarse to fine; ours by some methods."""
-        if absorbing_motion(self.scene):
+        closed = absorbing_motion(self.scene)
+        if closed:
             yield 'exact', '', *self.ours(duration, 'exact', 1e-12)
-        else:
-            able = [method for method in runnable(self.scene)
-                    if method in methods and 'accuracy' in METHODS[method].TAKES]
-            for method in able:
-                for tolerance in TOLERANCES:
-                    yield method, f'{tolerance:.0e}', *self.ours(duration, method, tolerance)
+        able = [method for method in runnable(self.scene)
+                if method in methods and 'accuracy' in METHODS[method].TAKES]
+        for method in able:
+            for tolerance in TOLERANCES:
+                yield method, f'{tolerance:.0e}', *self.ours(duration, method, tolerance)
+        if not closed:
             for goal in GOALS:
                 yield f'auto {goal:.0e}', '', *self.ours(duration, 'auto', goal)
         for tolerance in TOLERANCES * 1e-1:

@@ -19,6 +19,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.lanes import LANES
+from rigid_body_sim.compilation.repeated import repeated
 from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import GENERAL, METHODS, runnable
@@ -162,14 +163,15 @@ class Stepped:
         found = None if alone else self._bound.runner(self)
         if found is None:
             return self._run
-        final, room = found
-        fixed = self.step is not None
+        run = repeated(*found, REACHED, self._run)
+        if self.step is None:
+            return run
 
-        def run(start, time, out):
-            reached = final(room, start, time, out) == REACHED
-            if not reached or (fixed and not np.abs(out).max() < MODEST):
+        def run_in_fixed_steps(start, time, out):
+            run(start, time, out)
+            if not np.abs(out).max() < MODEST:
                 self._run(start, time, out)
-        return run
+        return run_in_fixed_steps
 
     def _run(self, start, time, out):
         self.start(start).state(time, out)

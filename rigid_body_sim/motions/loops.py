@@ -6,12 +6,14 @@ million, or out of order: either every state comes from the motion's kernel `sta
 has a kernel `fill_columns` of the same operations in the same order.
 """
 
+import math
+
 import numpy as np
 
 from rigid_body_sim.compilation.jit import compiled, compiled_allocating
 from rigid_body_sim.compilation.layout import layout
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.scene.state import STATE_SIZE, StateView
+from rigid_body_sim.scene.state import STATE, STATE_SIZE, StateView
 
 BINDINGS = ('ANCHOR_SIZE', 'anchor', 'state')
 # bindings of `fill_columns` and `states`: for a motion without a `fill_columns`, and with one
@@ -20,6 +22,7 @@ IN_COLUMNS = {'fill_columns': '{}:fill_columns', 'states': 'states = in_columns\
 BLOCK = 128         # states that are computed side by side
 FEW = 8             # below that they are taken one by one
 
+load_state = STATE.load
 COLUMNS = layout(StateView, BLOCK)    # one for each number of a state
 
 ANCHOR_SIZE = UNBOUND
@@ -30,12 +33,18 @@ fill_columns = UNBOUND
 
 @compiled
 def final(room, start, time, out):
-    """Fill out, shape (14,), with the state at a time from a start.
+    """Fill out, shape (14,), with the state at a time from a start; return whether it is one.
 
-    `room` holds an anchor, which is filled anew, and then the parameters.
+    `room` holds an anchor, which is filled anew, and then the parameters. Going back, a motion may
+    grow beyond what doubles hold.
     """
     anchor(room[ANCHOR_SIZE:], start, room[:ANCHOR_SIZE])
     state(room[:ANCHOR_SIZE], time, out)
+    if time < load_state(start).time:
+        for k in range(STATE_SIZE):
+            if not abs(out[k]) < math.inf:
+                return False
+    return True
 
 
 @compiled

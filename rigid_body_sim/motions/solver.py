@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.compilation.memory import memory
+from rigid_body_sim.compilation.repeated import repeated
 from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.compilation.threads import look, on_all_cores
 from rigid_body_sim.errors import BadInput
@@ -110,14 +111,8 @@ class Exact:
         It has the bits of ``self.start(start).state(time, out)``, by one kernel. Calls may not
         overlap: each thread makes a runner of its own.
         """
-        final = self._loops.final
         room = np.concatenate((np.empty(self.motion.ANCHOR_SIZE), self._parameters))
-
-        def run(start, time, out):
-            final(room, start, time, out)
-            if time < start[TIME]:
-                _refuse_beyond(out[np.newaxis])
-        return run
+        return repeated(self._loops.final, room, True, _refuse_state)
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s)."""
@@ -199,6 +194,11 @@ class Exact:
                 after = max(time, self._last_events[0] + tick)
             self._next_event = self.motion.next_event(self.anchor, after)
         return found
+
+
+def _refuse_state(start, time, out):
+    """Raise BadInput: a state before the start is not finite."""
+    _refuse_beyond(out[np.newaxis])
 
 
 def _refuse_beyond(states):

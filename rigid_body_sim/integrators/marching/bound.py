@@ -44,8 +44,9 @@ class Bound:
         places = tuple(itertools.accumulate(sizes))
         self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
+        arrives = stepped.step is None and hasattr(self.march, 'arrive')
         self.track = _track(self.march.__name__, equations.kernels.__name__, equations.write,
-                            places)
+                            places, arrives)
 
     def at(self, stepped):
         """Return the Bound of a solver that differs in its accuracy: it shares the kernels."""
@@ -109,13 +110,16 @@ class Bound:
 
 
 @functools.lru_cache(maxsize=KEPT)
-def _track(march, kernels, write, places):
+def _track(march, kernels, write, places, arrives):
     """Return the template track.py bound to a march, whose `places` are those in a piece.
 
-    The march and the kernels of the equations are given by the names of their modules.
+    The march and the kernels of the equations are given by the names of their modules. A march
+    that `arrives` has a kernel for final states.
     """
     bindings = {name: f'{march}:{name}' for name in ('begin', 'march', 'between', 'VALUES')}
     bindings['start'], bindings['write'] = f'{kernels}:start', write
     for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):
         bindings[name] = f'{name} = {place}\n'
+    final = track.ARRIVING if arrives else track.BY_STEPS
+    bindings |= {name: binding.format(march) for name, binding in final.items()}
     return specialise(track, **bindings)

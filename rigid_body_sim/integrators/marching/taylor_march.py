@@ -19,7 +19,10 @@ from rigid_body_sim.integrators.equations.euler import OMEGA, lost_norm
 from rigid_body_sim.integrators.marching.points import (
     CONTROL,
     FIXED,
+    LOST,
     ORIGIN,
+    PAUSED,
+    REACHED,
     SCALES,
     STEP,
     TIME,
@@ -47,6 +50,8 @@ UNMOVED = 1e-3           # s, the first step where nothing moves
 NOTHING = 1e-300         # (rad/s)^2, of a body that neither turns nor is turned
 # a plan is taken if the square of the last terms is what is allowed but for this factor
 NEAR = 16.0
+# the step is longer by one factor where the squares of the last terms are too small by the other
+BY, CLEARLY = 1.04, 4.0
 ROOT = 0.5 / (ORDER - 2)
 PART = 0.6 * ROOT        # exponent: the next plan follows the step that a point asks for in part
 # coefficients of Pade's approximation to x^PART near 1
@@ -153,11 +158,20 @@ def chosen(final, before, tolerance, planned):
 
 
 @compiled
-def _step(S, tolerance, planned, scale):
-    """Return (step, next plan), as `chosen` does, from the coefficients of all unknowns."""
+def _last_terms(S, scale):
+    """Return the squared norms of the last two coefficients, of all unknowns."""
     weight = 1.0 / scale if scale > NOTHING else 0.0
-    final, before = _square(S, int(ORDER), weight), _square(S, ORDER - 1, weight)
-    return chosen(final, before, tolerance, planned)
+    return _square(S, int(ORDER), weight), _square(S, ORDER - 1, weight)
+
+
+@inlined
+def _rescaled(scale, y, S):
+    """Return the squared scale of omega with what is met at a point, whose series are in S.
+
+    A body that hardly turns yet is measured by the rate that omega' gives it.
+    """
+    omega_rate = load_omega(S, int(PLACES))
+    return max(scale, dot(y.omega, y.omega), math.sqrt(dot(omega_rate, omega_rate)))
 
 
 @compiled
@@ -179,16 +193,15 @@ def march(p, control, point, following, target, end, limit):
     good = True
     while t < end:
         expand(p, S, (*y.q, *y.omega))
-        # a body that hardly turns yet is measured by the rate that omega' gives it
-        omega_rate = load_omega(S, int(PLACES))
-        scale1 = max(scale, dot(y.omega, y.omega), math.sqrt(dot(omega_rate, omega_rate)))
+        scale1 = _rescaled(scale, y, S)
         if fixed > 0.0:
             step = last + 1.0
             t1, h = control[ORIGIN] + step * fixed, fixed
             if t1 + NEARLY * fixed >= end:
                 t1, h = end, end - t
         else:
-            h, step = _step(S, tolerance, last, scale1)
+            final, before = _last_terms(S, scale1)
+            h, step = chosen(final, before, tolerance, last)
             t1 = end if t + 1.1 * h >= end else t + h
             h = t1 - t
         d = _completed(_turning(along(S, (h,))), y, c)
@@ -213,11 +226,62 @@ def march(p, control, point, following, target, end, limit):
 @compiled
 def between(p, control, point, following, dt):
     """Return the unknowns a time dt after a point, within the step from it, by its series."""
-    y = load(point, int(VALUES))
+    y, S = load(point, int(VALUES)), control[WORK:]
+    if dt > 0.0 and control[FOR] != point[TIME]:
+        expand(p, S, (*y.q, *y.omega))
+        control[FOR] = point[TIME]
+    return _after(S, y, dt)
+
+
+@compiled
+def arrive(p, control, point, target, limit):
+    """Return (how a march without points to a time ended, the unknowns then).
+
+    It has the bits of `march` and `between`. Time and unknowns of the start, a point that is not
+    later, are set. At most `limit` steps are made.
+    """
+    tolerance, S = control[TOLERANCE], control[WORK:]
+    t, y, last = point[TIME], load(point, int(VALUES)), 0.0
+    c, scale = Turning((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)), dot(y.omega, y.omega)
+    for _ in range(limit):
+        expand(p, S, (*y.q, *y.omega))
+        scale = _rescaled(scale, y, S)
+        final, before = _last_terms(S, scale)
+        dt = target - t
+        if not (t + BY * dt > target and _leads_beyond(final, before, tolerance, last, dt)):
+            h, step = chosen(final, before, tolerance, last)
+            t1 = t + h
+            d = _completed(_turning(along(S, (t1 - t,))), y, c)
+            y1 = _sum(y, d)
+            if not (t1 > t and _is_finite(y1)):
+                return LOST, (*y.q, *y.omega)
+            if t1 <= target:
+                t, last, y, c = t1, step, y1, _lost(y, d, y1)
+                continue
+        return REACHED, _after(S, y, dt)
+    return PAUSED, (*y.q, *y.omega)
+
+
+@compiled
+def _leads_beyond(final, before, tolerance, planned, dt):
+    """Return whether `chosen` gives a step longer than BY times dt; False where that is not clear.
+
+    It takes no root.
+    """
+    if 0.0 < planned < BY * dt:
+        return False
+    longest = max(planned, dt)    # a first plan follows from the final term
+    second = dt * dt
+    fourth = second * second
+    eighth = fourth * fourth
+    square = max(final * (longest * longest), before)
+    reached = square * (fourth * eighth * (eighth * eighth))
+    return final > NOTHING and CLEARLY * reached < tolerance * tolerance
+
+
+@inlined
+def _after(S, y, dt):
+    """Return the unknowns a time dt after those whose series are in S."""
     if dt > 0.0:
-        S = control[WORK:]
-        if control[FOR] != point[TIME]:
-            expand(p, S, (*y.q, *y.omega))
-            control[FOR] = point[TIME]
         y = _sum(y, _turning(along(S, (dt,))))
     return (*y.q, *y.omega)

@@ -23,6 +23,7 @@ start = UNBOUND
 begin = UNBOUND
 march = UNBOUND
 between = UNBOUND
+arrive = UNBOUND
 write = UNBOUND
 VALUES = UNBOUND
 # places in a piece
@@ -30,6 +31,10 @@ CONTROL = UNBOUND
 POINT = UNBOUND
 FOLLOWING = UNBOUND
 COUNTS = UNBOUND
+
+# bindings of `arrive` and `final`: for a march without an `arrive`, and with one
+BY_STEPS = {'arrive': 'arrive = None\n', 'final': 'final = in_steps\n'}
+ARRIVING = {'arrive': '{}:arrive', 'final': 'final = without_points\n'}
 
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # after COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
@@ -147,7 +152,7 @@ def first_state(prototype, vector, piece, time, end, out):
 
 
 @compiled
-def final(room, vector, time, out):
+def in_steps(room, vector, time, out):
     """Fill out with the state at a time after a start, in one call; return as `follow` does.
 
     LOST also stands for a time that cannot be reached from the start, or not without a breakpoint.
@@ -158,9 +163,7 @@ def final(room, vector, time, out):
         A prototype, with the time from which on what acts is constant in place of that of its
         point, and a piece, which is filled anew.
     """
-    start_time, omega = load_state(vector).time, load_state(vector).angular_velocity
-    turns = (time - start_time) * math.sqrt(dot(omega, omega))
-    if not (time >= start_time >= room[POINT + TIME] and turns < MOST_TURNS):
+    if not _can_be_reached(room, vector, time):
         return LOST
     piece = room[FOLLOWING:]
     first_piece(room[:FOLLOWING], vector, piece)
@@ -168,6 +171,36 @@ def final(room, vector, time, out):
     if status == REACHED:
         _within(piece, time, out)
     return status
+
+
+@compiled
+def without_points(room, vector, time, out):
+    """Fill out as `in_steps` does, to the same bits, by a march that keeps no points.
+
+    It works in the control of the prototype.
+    """
+    if not _can_be_reached(room, vector, time):
+        return LOST
+    piece = room[FOLLOWING:]
+    p, point = piece[:CONTROL], piece[POINT:FOLLOWING]
+    _copy(room[:CONTROL], p)
+    start(p, vector, piece, POINT + VALUES)
+    point[TIME] = load_state(vector).time
+    status, y = arrive(p, room[CONTROL:POINT], point, time, int(IN_ONE_CALL))
+    if status == REACHED:
+        write(p, time, y, out)
+    return status
+
+
+@compiled
+def _can_be_reached(room, vector, time):
+    """Return whether doubles count the turns until a time, and what acts is constant until then."""
+    start_time, omega = load_state(vector).time, load_state(vector).angular_velocity
+    turns = (time - start_time) * math.sqrt(dot(omega, omega))
+    return time >= start_time >= room[POINT + TIME] and turns < MOST_TURNS
+
+
+final = UNBOUND
 
 
 @compiled

@@ -38,7 +38,7 @@ def made(monkeypatch, breakpoints=(), modes=()):
 def test_a_piece_holds_parameters_control_two_points_counts_and_those_that_are_kept(monkeypatch):
     of, _, _, tracks = made(monkeypatch)
     assert (of.point, of.piece_size, of.track) == (5, SIZE, 'track')
-    assert tracks == [('march, True', 'kernels', 'write', PLACES)]
+    assert tracks == [('march, True', 'kernels', 'write', PLACES, False)]
     piece = np.arange(float(SIZE))
     parts = of.parts_of(piece)
     assert [part.tolist() for part in parts] == [

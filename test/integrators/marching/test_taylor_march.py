@@ -11,7 +11,16 @@ from near import near
 
 from rigid_body_sim.integrators.families import power_series
 from rigid_body_sim.integrators.marching import taylor_march
-from rigid_body_sim.integrators.marching.points import ORIGIN, SCALES, STEP, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import (
+    LOST,
+    ORIGIN,
+    PAUSED,
+    REACHED,
+    SCALES,
+    STEP,
+    TIME,
+    VALUES,
+)
 from rigid_body_sim.integrators.marching.taylor_series import ORDER, Turning
 from rigid_body_sim.integrators.solver import Stepped
 from rigid_body_sim.scene.scene import parse_scene
@@ -217,5 +226,47 @@ def test_the_terms_of_omega_count_beside_their_scale():
     S[taylor_march.PLACES * (ORDER - 1):][:7] = np.arange(1.0, 8.0) * 2e-6
     for scale, weight in ((4.0, 0.25), (1e-301, 0.0)):
         square = 30.0 + weight * 110.0
-        expected = taylor_march.chosen(square * 1e-12, square * 4e-12, 1e-9, 3.0)
-        assert taylor_march._step(S, 1e-9, 3.0, scale) == near(expected, rel=1e-14)
+        assert taylor_march._last_terms(S, scale) == near(
+            (square * 1e-12, square * 4e-12), rel=1e-14)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('planned', [0.0, 0.5, 2.0])
+@pytest.mark.parametrize(('final', 'before'), [
+    (1e-3, 0.0), (1e-3, 1e-3), (1e-8, 1e-1), (1e-290, 1e-1), (1e-17, 1e-17), (1e2, 1e5)])
+def test_what_leads_beyond_a_time_is_longer_and_what_is_much_longer_leads_beyond(
+        planned, final, before):
+    tolerance = 1e-9
+    h, _ = taylor_march.chosen(final, before, tolerance, planned)
+    for share in (1e-3, 0.5, 0.85, 1.0, 1.5, 10.0):
+        dt = share * h
+        leads = taylor_march._leads_beyond(final, before, tolerance, planned, dt)
+        assert not leads or h > taylor_march.BY * dt
+        if share <= (0.85 if planned == 0.0 else 1.0 / taylor_march.GROWTH):
+            assert leads
+    for nothing in (0.0, 1e-301, math.nan):    # the first step is a fixed one
+        assert not taylor_march._leads_beyond(nothing, 0.0, tolerance, planned, 1e-3 * h)
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
+def test_a_march_without_points_has_the_bits_of_the_march_on_and_beside_its_points(accuracy):
+    for begin in (0.0, 1e6):
+        march, p, control, point, following = marching(accuracy=accuracy)
+        start, times = point.copy(), []
+        start[TIME] = point[TIME] = control[ORIGIN] = begin
+        for _ in range(4):
+            march.march(p, control, point, following, point[TIME], math.inf, 1)
+            length = following[TIME] - point[TIME]
+            times += [point[TIME] + share * length for share in (0.0, 1e-9, 0.3, 0.8, 0.97, 0.999)]
+            times += [math.nextafter(following[TIME], side) for side in (0.0, math.inf)]
+            march.march(p, control, point, following, following[TIME], math.inf, 1)
+        for time in times:
+            point[:], following[TIME] = start, start[TIME]
+            march.march(p, control, point, following, time, math.inf, 10)
+            between = march.between(p, control, point, following, time - point[TIME])
+            assert march.arrive(p, control, start.copy(), time, 10) == (REACHED, between)
+    assert march.arrive(p, control, start.copy(), times[-1], 2)[0] == PAUSED
+    start[TIME], start[VALUES + 4] = 0.0, 1e200
+    with np.errstate(all='ignore'):
+        assert march.arrive(p, control, start, 1.0, 9)[0] == LOST
