@@ -93,8 +93,9 @@ class Choice:
         family does not account for one. It also goes on where a command has brought the body to a
         state from which the motion does not hold, or errs by more than the accuracy.
         """
-        if not wrench and self._holds(start) and (not self.is_nearly or self._meets(start)):
-            return self._prototype.start(start)
+        prototype = self._prototype
+        if not wrench and (not prototype.rests_on_start or self._goes_on(start)):
+            return prototype.start(start)
         return self._general(wrench).start(start)
 
     def runner(self):
@@ -131,10 +132,10 @@ class Choice:
         """Whether it is a closed form that a strike of the scene may end."""
         return self._asks and bool(self.scene.strikes)
 
-    @functools.cached_property
+    @property
     def rests_on_start(self):
         """Whether it is a closed form that another start of the scene may not have."""
-        return self._asks or self.is_nearly
+        return self._prototype.rests_on_start
 
     @property
     def is_nearly(self):
@@ -185,6 +186,10 @@ class Choice:
     def _holds(self, start):
         """Return whether the prototype goes on from a state."""
         return not self._asks or self._prototype.takes(start)
+
+    def _goes_on(self, start):
+        """Return whether the prototype goes on from a state, and errs there by what is allowed."""
+        return self._holds(start) and (not self.is_nearly or self._meets(start))
 
     @functools.cached_property
     def _leaves_out_rounding(self):

@@ -22,7 +22,14 @@ class Solver(Protocol):
 
     The state at a time does not depend on which other times were asked. Unless stated otherwise,
     vectors are those of scene/state.py (14 doubles) and times are simulated seconds.
+
+    Attributes
+    ----------
+    rests_on_start : bool
+        Whether it may not hold, or not well enough, from another start of the scene.
     """
+
+    rests_on_start: bool
 
     @property
     def name(self) -> str:

@@ -88,6 +88,8 @@ class Stepped:
         By name and value, before anything runs.
     """
 
+    rests_on_start = False
+
     def __init__(self, scene, method, accuracy=None, step=None, wrench=None, horizon=100.0,
                  most=None, wanted=math.inf):
         if wrench:
@@ -107,6 +109,9 @@ class Stepped:
         self._carried = scene.frame.path is not None
         self._may_leave_doubles = self._carried or step is not None
         self._mechanics = parameters(scene) if step is not None else None
+        # of a solver that was started
+        self.vector, self.begin, self._latest, self._course = None, None, None, None
+        self._quadrature, self._watcher = None, None
 
     def at(self, accuracy, most=None, wanted=math.inf):
         """Return a Stepped that differs in its accuracy, its `most` steps and what is `wanted`.
@@ -138,7 +143,6 @@ class Stepped:
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        started._quadrature, started._watcher = None, None
         near = departure(self.scene, vector) if self._departs else None
         if near is None:
             started._course = self._marching(started)

@@ -80,6 +80,8 @@ class Exact:
         self._scene, self._solved = scene, solved or scene
         self._parameters = motion.parameters(self._solved)
         self._loops, self._asked = loops(motion), _Asked(scene, motion)
+        self.rests_on_start = motion.takes is not None or self.is_nearly
+        self.anchor, self._start = None, None    # of a solver that was started
         self._next_event, self._quadrature, self._watcher = None, None, None
         self._last_events = NONE_YET
 

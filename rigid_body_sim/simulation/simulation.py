@@ -148,7 +148,7 @@ class Simulation:
         self._mechanics = parameters.parameters(self.scene)
         self._energies = energies(self.scene)
         self._diagnosis = np.empty(energy.DIAGNOSIS_SIZE)
-        self._entries_size = entries_size(self.scene)
+        self._nothing_given = np.zeros(entries_size(self.scene))
         self._strikes = Strikes(self.scene, self._mechanics)
         self._begin(self.choice, self.scene.initial.vector, 0)
         if self.method != 'exact':    # a method that steps may find that it cannot begin
@@ -272,8 +272,8 @@ class Simulation:
         fault = self._energies.diagnose_start(self._mechanics, start, diagnosis)
         if fault:
             refuse_start(self.scene.name, fault, start, diagnosis)
-        solver, given = choice.solver(start, NOTHING_HELD), np.zeros(self._entries_size)
-        spans = [Span(0.0, solver, NOTHING_HELD, 0, given, start)]
+        solver = choice.solver(start, NOTHING_HELD)
+        spans = [Span(0.0, solver, NOTHING_HELD, 0, self._nothing_given, start)]
         if self.scene.strikes:
             spans = self._strikes.follow(spans, 0.0, choice)
         self._arrived, self._diagnosed_tick = False, None

@@ -130,6 +130,7 @@ def test_the_general_method_goes_on_where_a_choice_cannot(method, takes, wrench,
     monkeypatch.setattr(module, 'general', lambda *settings: named('general'))
     prototype = named('itself')
     prototype.takes, prototype.is_nearly = lambda start: takes, False
+    prototype.rests_on_start = method == 'exact' and takes is not None
     prototype.motion = types.SimpleNamespace(takes=None if takes is None else prototype.takes)
     assert choice(method, prototype=prototype).solver(np.zeros(14), wrench) == expected
 
