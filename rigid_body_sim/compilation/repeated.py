@@ -45,7 +45,7 @@ def repeated(kernel, room, done, otherwise):
 
 
 def _version(kernel, room, start, out):
-    """Return the compiled version of a kernel for arrays, the kernel itself where there is none."""
+    """Return the compiled version of a kernel for arrays; where there is none, the kernel."""
     if not HAVE_NUMBA:
         return kernel
     array_types = [numba.typeof(array) for array in (room, start, out)]

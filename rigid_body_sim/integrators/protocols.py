@@ -309,8 +309,8 @@ class MarchingFamily(Family, Protocol):
         module
             With ``SIZE`` (unknowns), ``VALUES`` (place of the unknowns in a point), ``begin(p,
             control, point)``, ``march(p, control, point, following, target, end, limit)`` and
-            ``between(p, control, point, following, dt)``. If it has ``arrive(p, control, point,
-            target, limit)``, that gives final states where the method chooses its own steps.
+            ``between(p, control, point, following, dt)``; ``arrive(p, control, point, target,
+            limit)`` gives final states where the method chooses its own steps, or is None.
         """
 
     def begin(self, stepped: Any, march: Any) -> tuple[np.ndarray, np.ndarray]:

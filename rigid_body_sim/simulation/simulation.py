@@ -193,7 +193,8 @@ class Simulation:
         It fills `out`, shape (14,), with the state at a time (s) that a simulation begun at
         `start`, an array (14,), would have: the bits of :meth:`restart` and then :meth:`states`,
         where the start is at time 0. It is the quickest way to one state: under a microsecond for
-        short runs. This simulation stays as it is. Like the starts of :func:`ensemble`, a start is
+        short runs, half of one where the same two arrays come each time. This simulation stays as
+        it is. Like the starts of :func:`ensemble`, a start is
         taken as it is, with its own time, and the strikes of the scene are left out. Calls may not
         overlap: each thread makes a runner of its own.
         """

@@ -37,6 +37,7 @@ balanced = UNBOUND
 FLIGHT = UNBOUND    # which of the scales are those of place and velocity; (): none
 SIZE = UNBOUND
 ORDER = UNBOUND
+arrive = None    # final states are like others
 
 ROUNDING = CONTROL.size    # places in `control`
 MOVING = ROUNDING + 1

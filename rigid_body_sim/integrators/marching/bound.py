@@ -44,7 +44,7 @@ class Bound:
         places = tuple(itertools.accumulate(sizes))
         self.point, self._places = places[1], places
         self.piece_size = places[-1] + track.STORE + track.CHECKPOINTS * len(point)
-        arrives = stepped.step is None and hasattr(self.march, 'arrive')
+        arrives = stepped.step is None and self.march.arrive is not None
         self.track = _track(self.march.__name__, equations.kernels.__name__, equations.write,
                             places, arrives)
 

@@ -37,6 +37,7 @@ SIZE = UNBOUND
 BASED = UNBOUND
 PLACES = UNBOUND
 ROOM = UNBOUND
+arrive = None    # final states are like others
 
 FALL = 0.9                 # largest fall of a base within a step, relative to the base
 RISE = 3.0                 # and largest change

@@ -16,6 +16,7 @@ step = UNBOUND
 load = UNBOUND
 put = UNBOUND
 SIZE = UNBOUND
+arrive = None    # final states are like others
 
 COUNT = STEP    # in the place of the planned step: the number of the point
 NEARLY = 1e-9    # share of a step: an end that close to a point is that point

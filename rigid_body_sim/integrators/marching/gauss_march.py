@@ -94,6 +94,7 @@ TAIL = UNBOUND
 CURVE = UNBOUND
 BETWEEN = UNBOUND
 ASIDE = UNBOUND
+arrive = None    # final states are like others
 
 TURNING = CONTROL.size      # places in `control`
 MOVING = TURNING + 1

@@ -194,7 +194,7 @@ def without_points(room, vector, time, out):
 
 @compiled
 def _can_be_reached(room, vector, time):
-    """Return whether doubles count the turns until a time, and what acts is constant until then."""
+    """Return whether doubles count the turns until a time, and what acts is constant till then."""
     start_time, omega = load_state(vector).time, load_state(vector).angular_velocity
     turns = (time - start_time) * math.sqrt(dot(omega, omega))
     return time >= start_time >= room[POINT + TIME] and turns < MOST_TURNS

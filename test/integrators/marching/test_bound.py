@@ -28,7 +28,8 @@ def made(monkeypatch, breakpoints=(), modes=()):
         kernels=types.SimpleNamespace(__name__='kernels'))
     family = types.SimpleNamespace(
         equations_of=lambda scene, wrench: equations,
-        march=lambda method, of, adapts: types.SimpleNamespace(__name__=f'march, {adapts}'),
+        march=lambda method, of, adapts: types.SimpleNamespace(
+            __name__=f'march, {adapts}', arrive=None),
         begin=lambda stepped, march: (np.array([stepped.accuracy, 7.0]), np.arange(LENGTH)))
     monkeypatch.setattr(bound, '_track', lambda *names: tracks.append(names) or 'track')
     stepped = types.SimpleNamespace(scene=None, wrench=None, step=None, accuracy=0.5)

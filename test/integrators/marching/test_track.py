@@ -51,7 +51,8 @@ TRACK = specialise(
     start='def start(p, vector, piece, place):\n    piece[place] = vector[8]\n',
     begin=f'def begin(p, control, point):\n    point[{STEP}] = 0.5\n',
     between=f'def between(p, control, point, following, dt):\n    return point[{VALUES}], dt\n',
-    write='def write(p, time, y, out):\n    out[0], (out[1], out[2]) = time, y\n', **track.BY_STEPS)
+    write='def write(p, time, y, out):\n    out[0], (out[1], out[2]) = time, y\n',
+    **track.BY_STEPS)
 
 
 def prototype(good=math.inf):
