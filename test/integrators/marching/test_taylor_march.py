@@ -238,7 +238,7 @@ def test_what_leads_beyond_a_time_is_longer_and_what_is_much_longer_leads_beyond
         planned, final, before):
     tolerance = 1e-9
     h, _ = taylor_march.chosen(final, before, tolerance, planned)
-    for share in (1e-3, 0.5, 0.85, 1.0, 1.5, 10.0):
+    for share in (1e-3, 0.5, 0.85, 0.95, 0.97, 1.0, 1.5, 10.0):
         dt = share * h
         leads = taylor_march._leads_beyond(final, before, tolerance, planned, dt)
         assert not leads or h > taylor_march.BY * dt
@@ -251,14 +251,15 @@ def test_what_leads_beyond_a_time_is_longer_and_what_is_much_longer_leads_beyond
 @pytest.mark.without_numba
 @pytest.mark.parametrize('accuracy', [1e-3, 1e-9])
 def test_a_march_without_points_has_the_bits_of_the_march_on_and_beside_its_points(accuracy):
-    for begin in (0.0, 1e6):
+    """At 2^50 s the digits of time are steps of 0.25 s: one of 0.33 s ends at the next digit."""
+    for begin in (0.0, 1e6, 2.0 ** 50):
         march, p, control, point, following = marching(accuracy=accuracy)
         start, times = point.copy(), []
         start[TIME] = point[TIME] = control[ORIGIN] = begin
-        for _ in range(4):
+        for _ in range(3):
             march.march(p, control, point, following, point[TIME], math.inf, 1)
             length = following[TIME] - point[TIME]
-            times += [point[TIME] + share * length for share in (0.0, 1e-9, 0.3, 0.8, 0.97, 0.999)]
+            times += [point[TIME] + share * length for share in (0.0, 0.3, 0.97)]
             times += [math.nextafter(following[TIME], side) for side in (0.0, math.inf)]
             march.march(p, control, point, following, following[TIME], math.inf, 1)
         for time in times:
