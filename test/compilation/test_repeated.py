@@ -18,6 +18,13 @@ def added(room, start, time, out):
     return time >= 0.0
 
 
+@compiled
+def summed(room, start, time, out):
+    """Fill out with sums."""
+    for k in range(len(out)):
+        out[k] = room[0] + start[k] + time
+
+
 def refused(start, time, out):
     """Raise what tells all of a call."""
     raise ValueError(f'{start.tolist()} {time} {out.tolist()}')
@@ -80,3 +87,11 @@ def test_arrays_of_other_numbers_are_taken_for_what_they_are():
     for _ in range(3):
         run(start, 0.5, out)
         assert out[0] == 103.5
+
+
+def test_what_is_filled_may_be_every_other_number_of_an_array():
+    run, start, out = repeated(summed, ROOM, None, refused), np.array([1.0, 2.0]), np.zeros((2, 2))
+    for column in (out.ravel()[:2], out[:, 1]):
+        for _ in range(2):
+            run(start, 0.5, column)
+    assert out.tolist() == [[101.5, 101.5], [0.0, 102.5]]
