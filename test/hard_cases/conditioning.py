@@ -7,6 +7,7 @@ from rigid_body_sim.integrators.methods import dop8
 from rigid_body_sim.mechanics.bounds import swing_rate
 from rigid_body_sim.mechanics.parameters import moment_about_hinge
 from rigid_body_sim.mechanics.quadrature import MOST, RADIANS
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.rotations import angle_between
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, ORIENTATION, VELOCITY
 
@@ -64,7 +65,7 @@ class Allowed:
         """Add what the present state may have lost."""
         omega, v = np.abs(simulation.vector[ANGULAR_VELOCITY]), simulation.vector[11:14]
         passed = simulation.time - self._time
-        size = float(np.linalg.norm(omega)) + self._swing
+        size = hypot3(*omega.tolist()) + self._swing    # of 1e-163 the squares are 0
         ulp = FEW * (EPSILON + self._loss * passed)
         self.energy += ulp * (float(self._moments @ omega) * size + self._mass * float(v @ v)
                               + self._weight + self._quadrature * abs(simulation.ledger()['work']))
