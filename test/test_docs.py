@@ -15,7 +15,7 @@ from near import near
 from soak import IN_SOAK
 
 from rigid_body_sim.cli.subcommands import SUBCOMMANDS
-from rigid_body_sim.integrators.marching import contact_course
+from rigid_body_sim.integrators.marching import contact_succession
 from rigid_body_sim.mechanics import events
 from rigid_body_sim.motions import sliding_sphere
 from rigid_body_sim.scene.effects import EFFECTS
@@ -249,9 +249,9 @@ def test_every_effect_has_its_law_and_keys_on_the_page_of_scenes():
 
 
 def test_every_event_is_on_the_page_of_scenes():
-    names = {*events.WATCHED, *sliding_sphere.EVENTS, *contact_course.BEGAN.values()}
-    source = pathlib.Path(contact_course.__file__).read_text()
-    names |= set(re.findall(r"_events.append\(\([^']*'([^']+)'", source))
+    names = {*events.WATCHED, *sliding_sphere.EVENTS, *contact_succession.BEGAN.values()}
+    source = pathlib.Path(contact_succession.__file__).read_text()
+    names |= set(re.findall(r"events.append\(\([^']*'([^']+)'", source))
     assert {'impact', 'lift-off', 'rest', 'flip'} <= names
     text = (DOCS / 'scenes.md').read_text()
     for name in names:

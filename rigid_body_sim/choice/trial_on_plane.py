@@ -13,7 +13,7 @@ from rigid_body_sim.choice.comparison import FINER
 from rigid_body_sim.choice.forecast import Forecast
 from rigid_body_sim.choice.trial import SATURATED, Trial
 from rigid_body_sim.choice.trial_runs import COARSER, NEAR
-from rigid_body_sim.integrators.marching.contact_course import CANCELS
+from rigid_body_sim.integrators.marching.contact_succession import CANCELS
 from rigid_body_sim.integrators.marching.work import TooMuchWork
 from rigid_body_sim.mechanics.contact.numbers import weight
 from rigid_body_sim.numerics.functions import hypot3
@@ -78,7 +78,7 @@ class TrialOnPlane(Trial):
         """Return the finest tolerance (rad) whose finer run, NEAR of it, steps can still follow.
 
         The rounding of forces that cancel limits the tolerance per second
-        (marching/contact_course.py).
+        (marching/contact_succession.py).
         """
         heaviness, size = max(weight(self._scene), 1e-3), max(self._scene.body.surface.size)
         start = self._scene.initial

@@ -104,7 +104,7 @@ MUTANTS = {
         'test/mechanics/contact/test_patch.py::'
         'test_a_patch_that_pivots_slips_as_it_is_said_and_goes_on_the_cone[1-1.0]'),
     'contact: slip begins where friction holds': (
-        'integrators/marching/contact_course.py',
+        'integrators/marching/contact_succession.py',
         'if mode == ROLLING and row[GRIP] < -HOLDS * mu * row[NORMAL]',
         'if mode == ROLLING and row[GRIP] > HOLDS * mu * row[NORMAL]',
         'test/integrators/marching/test_hard_contacts.py::'

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A convex body on a plane: the kernels that march through its phases, and its numbers.
 
-The phases are in equations/contact_rates.py, what follows an event in contact_course.py.
+The phases are in equations/contact_rates.py, what follows an event in contact_succession.py.
 """
 
 import bisect

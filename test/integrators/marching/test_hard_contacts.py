@@ -21,7 +21,7 @@ from soak import IN_SOAK, SOAK
 
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators.equations.contact_views import FLIGHT
-from rigid_body_sim.integrators.marching import contact_course, contact_march
+from rigid_body_sim.integrators.marching import contact_march, contact_succession
 from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
@@ -273,14 +273,14 @@ def test_a_slip_that_ends_where_n_is_0_is_told_as_lift_off(why):
     """The march hands over both as 0: in 307 scenes aimed at that, the ball rolled first."""
     sim = simulation(PULLED, f'sliding_friction: {{mu: 0.25}}, {pull("world")}',
                      '{velocity: [1, 0, 0]}', accuracy=1e-9)
-    course = sim._spans[-1].solver._course
-    phase, = course._phases
-    phase.front[contact_course.SLIP] = 0.0
-    phase.front[contact_course.TIME] = G / PULL
+    course = sim._spans[-1].solver._course._so_far
+    phase, = course.phases
+    phase.front[contact_succession.SLIP] = 0.0
+    phase.front[contact_succession.TIME] = G / PULL
     phase._meta[contact_march.STATUS] = why
-    course._follow(phase)
-    assert course._phases[-1].p[contact_march.MODE] == FLIGHT
-    assert course._events == [(G / PULL, 'lift-off', {})]
+    course.follow(phase)
+    assert course.phases[-1].p[contact_march.MODE] == FLIGHT
+    assert course.events == [(G / PULL, 'lift-off', {})]
 
 
 @pytest.mark.without_numba

@@ -352,11 +352,11 @@ def test_a_rolling_that_no_step_follows_to_its_end_is_over():
         'initial: {angular_velocity: [1.0, 2.0, 0.0], rolling: true}\n'), 'dop8', 1e-9)
     sim.states([1e-4])
     course = sim._spans[-1].solver._course
-    phase = course._phases[-1]
+    phase = course._so_far.phases[-1]
     phase.front[UNKNOWNS.part('omega').places] *= 1e-12
     # the steps that come so far take minutes in plain Python
     phase._meta[contact_march.STATUS] = contact_march.FAILED
-    course._follow(phase)
+    course._so_far.follow(phase)
     assert [name for _, name, _ in course.events(0.0, 0.01)] == ['rest']
 
 

@@ -36,7 +36,7 @@ def simulation(effects, initial, table, accuracy, horizon):
 def phases_of(sim):
     """Return (mode, steps) of the phases of the course that a simulation is on."""
     return [(int(phase.p[MODE]), int(phase._meta[STEPS]))
-            for phase in sim._spans[-1].solver._course._phases]
+            for phase in sim._spans[-1].solver._course._so_far.phases]
 
 
 def on_a_slope(patch, spin, accuracy, horizon):
