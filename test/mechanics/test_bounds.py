@@ -227,3 +227,15 @@ def test_a_run_that_is_not_a_number_has_no_angle():
     for rates in ([1.0, math.nan, 1.0], [1.0, 1.0, math.nan], [math.nan, 1.0, 1.0]):
         angles_turned(np.arange(3.0), np.array(rates), math.inf, turned)
         assert math.isnan(turned[2])
+
+
+@pytest.mark.parametrize('inertia', [
+    (2.0, 3.0, 4.0), (4.0, 4.0 + 1e-6, 1e-6), (2.0, 2.0, 0.0)])
+def test_a_gravity_gradient_on_an_orbit_hardly_turns_a_slim_body_about_its_axis(inertia):
+    """3 n^2/2 times a difference of moments over the moment about each axis: n = 2 rad/s."""
+    orbit = 'gravity_gradient: {orbit: {rate: 2.0, normal: [0, 0, 1], toward: [1, 0, 0]}}'
+    I1, I2, I3 = inertia
+    pushes = [(I2 - I3) / I1, (I3 - I1) / I2, (I1 - I2) / I3 if I3 else 0.0]
+    expected = min(6.0 * math.hypot(*pushes), 6.0 * (max(inertia) - min(inertia)) / min(
+        moment for moment in inertia if moment))
+    assert drive(scene('free', orbit, inertia), None) == near(expected, rel=1e-8)

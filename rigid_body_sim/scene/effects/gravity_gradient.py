@@ -159,8 +159,19 @@ class GravityGradient(Effect):
         return actions.potential(self.energy, (), frame)
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
-        """Return half of what the energy can change by."""
-        return Bounds(0.5 * self.most, 0.0 if self.energy is not None else self.most)
+        """Return half of what the energy can change by, and the torque on an orbit.
+
+        About each axis the torque is at most the share of a difference of moments: a slim body
+        gets next to none about its thin axis. So it counts as the one that gives the same
+        angular acceleration about the least moment.
+        """
+        if self.energy is not None:
+            return Bounds(0.5 * self.most, 0.0)
+        I1, I2, I3 = moments = body.about_center.moments
+        least = min(moment for moment in moments if moment > 0.0)
+        pushes = (difference * (least / moment) if moment > 0.0 else 0.0 for difference, moment
+                  in zip((I2 - I3, I3 - I1, I1 - I2), moments, strict=True))
+        return Bounds(0.5 * self.most, min(self.most, 0.5 * self.share * hypot3(*pushes)))
 
 
 @compiled
