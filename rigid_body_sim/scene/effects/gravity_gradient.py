@@ -18,6 +18,7 @@ from rigid_body_sim.scene.effects.protocol import (
     Formulas,
     Potential,
     Pull,
+    share_of_least,
 )
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.source import TIME
@@ -159,19 +160,12 @@ class GravityGradient(Effect):
         return actions.potential(self.energy, (), frame)
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
-        """Return half of what the energy can change by, and the torque on an orbit.
-
-        About each axis the torque is at most the share of a difference of moments: a slim body
-        gets next to none about its thin axis. So it counts as the one that gives the same
-        angular acceleration about the least moment.
-        """
+        """Return half of what the energy can change by, and the torque on an orbit."""
         if self.energy is not None:
             return Bounds(0.5 * self.most, 0.0)
         I1, I2, I3 = moments = body.about_center.moments
-        least = min(moment for moment in moments if moment > 0.0)
-        pushes = (difference * (least / moment) if moment > 0.0 else 0.0 for difference, moment
-                  in zip((I2 - I3, I3 - I1, I1 - I2), moments, strict=True))
-        return Bounds(0.5 * self.most, min(self.most, 0.5 * self.share * hypot3(*pushes)))
+        share = share_of_least((I2 - I3, I3 - I1, I1 - I2), moments, max(moments) - min(moments))
+        return Bounds(0.5 * self.most, self.most, share=share)
 
 
 @compiled
