@@ -235,10 +235,9 @@ def test_a_run_that_is_not_a_number_has_no_angle():
     'gravity_gradient: {orbit: {rate: 2.0, normal: [0, 0, 1], toward: [1, 0, 0]}}'])
 @pytest.mark.parametrize('inertia', [(2.0, 3.0, 4.0), (4.0, 4.0 + 1e-6, 1e-6), (2.0, 2.0, 0.0)])
 def test_drives_turn_a_body_about_each_axis_by_the_moment_there(inertia, effect):
-    """6 and 8 N m; 3 n^2/2 times the differences of moments, n = 2 rad/s; at most all of it
-    about the least one.
+    """6 and 8 N m, or 3 n^2/2 times the differences of moments, n = 2 rad/s.
 
-    About an axis without a moment no torque turns.
+    It is at most all of it about the least moment; about an axis without one no torque turns.
     """
     found = drives(scene('free', effect, inertia))[-1][1]
     torques = (0.0, 6.0, 8.0)
