@@ -117,11 +117,13 @@ def drive(scene, wrench):
 def drives(scene):
     """Return the bound that `drive` gives as it changes in time: (time, acceleration) from 0 on.
 
-    Each acceleration (rad/s^2) holds from its time (s) to the next.
+    Each acceleration (rad/s^2) holds from its time (s) to the next. A drive counts by its share
+    (protocol.py): a torque across a slim body does not turn it about its thin axis.
     """
     found = _bounds(scene)
     times = sorted({0.0, *(time for bounds in found for time, _ in bounds.pieces)})
-    torques = [reduce(add, (_torque_at(bounds, time) for bounds in found), 0.0) for time in times]
+    torques = [reduce(add, (bounds.share * _torque_at(bounds, time) for bounds in found), 0.0)
+               for time in times]
     moment = _least_moment(scene) if any(torques) else 1.0
     return [(time, torque / moment) for time, torque in zip(times, torques, strict=True)]
 

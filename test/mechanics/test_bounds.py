@@ -115,7 +115,8 @@ PULSE = 'torque: {times: [1, 3], values: [[0, 3, 4], [0, 0, 0]]}'
 @pytest.mark.parametrize(('constraint', 'least'), [('free', 2.0), (HINGE, 3.18)])
 def test_drives_change_where_a_torque_jumps(constraint, least):
     """5 N m from 1 to 3 s; a torque of 2 N m adds to it all the time."""
-    both = f'{PULSE}, torque: {{value: [2, 0, 0]}}'
+    both = f'{PULSE}, torque: {{value: [2, 0, 0], frame: world}}'.replace(
+        'torque: {times', 'torque: {frame: world, times')
     assert drives(scene(constraint, both)) == [
         (0.0, near(2.0 / least, rel=1e-15)), (1.0, near(7.0 / least, rel=1e-15)),
         (3.0, near(2.0 / least, rel=1e-15))]
@@ -227,3 +228,29 @@ def test_a_run_that_is_not_a_number_has_no_angle():
     for rates in ([1.0, math.nan, 1.0], [1.0, 1.0, math.nan], [math.nan, 1.0, 1.0]):
         angles_turned(np.arange(3.0), np.array(rates), math.inf, turned)
         assert math.isnan(turned[2])
+
+
+@pytest.mark.parametrize('effect', [
+    'torque: {value: [0, 6, 8]}', 'torque: {times: [0], values: [[0, 6, 8]]}',
+    'gravity_gradient: {orbit: {rate: 2.0, normal: [0, 0, 1], toward: [1, 0, 0]}}'])
+@pytest.mark.parametrize('inertia', [(2.0, 3.0, 4.0), (4.0, 4.0 + 1e-6, 1e-6), (2.0, 2.0, 0.0)])
+def test_drives_turn_a_body_about_each_axis_by_the_moment_there(inertia, effect):
+    """6 and 8 N m, or 3 n^2/2 times the differences of moments, n = 2 rad/s.
+
+    It is at most all of it about the least moment; about an axis without one no torque turns.
+    """
+    found = drives(scene('free', effect, inertia))[-1][1]
+    torques = (0.0, 6.0, 8.0)
+    if 'orbit' in effect:
+        torques = 6.0 * (inertia[1] - inertia[2]), 6.0 * (inertia[2] - inertia[0]), 6.0 * (
+            inertia[0] - inertia[1])
+    expected = math.hypot(*(torque / moment for torque, moment in zip(
+        torques, inertia, strict=True) if moment))
+    least = min(moment for moment in inertia if moment)
+    size = 6.0 * (max(inertia) - min(inertia)) if 'orbit' in effect else 10.0
+    assert found == near(min(expected, size / least), rel=1e-8)
+
+
+def test_a_torque_in_world_axes_may_turn_a_body_about_any_axis():
+    slim = scene('free', 'torque: {value: [0, 6, 8], frame: world}', (4.0, 4.0, 1e-3))
+    assert drives(slim) == [(0.0, near(1e4, rel=1e-14))]

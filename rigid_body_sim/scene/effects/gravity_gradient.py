@@ -18,6 +18,7 @@ from rigid_body_sim.scene.effects.protocol import (
     Formulas,
     Potential,
     Pull,
+    share_of_least,
 )
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.source import TIME
@@ -159,8 +160,12 @@ class GravityGradient(Effect):
         return actions.potential(self.energy, (), frame)
 
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
-        """Return half of what the energy can change by."""
-        return Bounds(0.5 * self.most, 0.0 if self.energy is not None else self.most)
+        """Return half of what the energy can change by, and the torque on an orbit."""
+        if self.energy is not None:
+            return Bounds(0.5 * self.most, 0.0)
+        I1, I2, I3 = moments = body.about_center.moments
+        share = share_of_least((I2 - I3, I3 - I1, I1 - I2), moments, max(moments) - min(moments))
+        return Bounds(0.5 * self.most, self.most, share=share)
 
 
 @compiled

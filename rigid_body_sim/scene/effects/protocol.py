@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
+from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.expressions.tree import ZERO, Term
@@ -178,6 +179,19 @@ class Momentum(NamedTuple):
     values: tuple[float, ...]
 
 
+def share_of_least(torques: Iterable[float], moments: Iterable[float], size: float) -> float:
+    """Return Bounds.share of a drive, from its largest torques about principal axes.
+
+    `size` is what all are together at most. About an axis without a moment nothing turns.
+    """
+    least = min(moment for moment in moments if moment > 0.0)
+    if not 0.0 < size < float('inf'):
+        return 1.0
+    pushes = (torque / size * (least / moment) if moment > 0.0 else 0.0
+              for torque, moment in zip(torques, moments, strict=True))
+    return min(1.0, hypot3(*pushes))
+
+
 class Bounds(NamedTuple):
     """Bounds of an effect; solvers derive from them how often they look for events.
 
@@ -190,11 +204,15 @@ class Bounds(NamedTuple):
     pieces : tuple of (float, float)
         Rising times (s) and the largest torque of the drive from each to the next (N m), where
         that is known; before the first it is 0.
+    share : float
+        The largest angular acceleration that the drive gives, over that of its torque about the
+        least moment: small where a slim body gets next to no torque about its thin axis.
     """
 
     energy: float
     torque: float
     pieces: tuple[tuple[float, float], ...] = ()
+    share: float = 1.0
 
 
 class Cancelling(NamedTuple):

@@ -12,11 +12,19 @@ from typing import Any, ClassVar, Self
 
 from rigid_body_sim.errors import BadInput
 from rigid_body_sim.numerics.functions import hypot3
+from rigid_body_sim.numerics.rotations import rotate_back
 from rigid_body_sim.numerics.vectors import scaled
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import ExpressedTorque
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Effect, Pull, as_floats
+from rigid_body_sim.scene.effects.protocol import (
+    Acting,
+    Bounds,
+    Effect,
+    Pull,
+    as_floats,
+    share_of_least,
+)
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of
@@ -112,4 +120,10 @@ class Torque(Effect):
     def bounds(self, body: Body, constraint: Constraint) -> Bounds:
         """Return the largest torque, and that of each piece."""
         sizes = [hypot3(*value) for value in self.values]
-        return Bounds(0.0, max(sizes), tuple(zip(self.times, sizes, strict=True)))
+        share = 1.0
+        if self.frame == 'body' and constraint.axis is None:
+            inertia = constraint.inertia(body)
+            share = max((share_of_least(rotate_back(*inertia.axes, *value), inertia.moments,
+                                        hypot3(*value))
+                         for value in self.values if any(value)), default=1.0)
+        return Bounds(0.0, max(sizes), tuple(zip(self.times, sizes, strict=True)), share)

@@ -67,7 +67,8 @@ def test_a_force_has_a_potential_where_it_and_a_point_are_fixed_in_the_world(kin
 def test_a_torque_in_pieces_is_bounded_by_its_largest_one():
     found = bounds('torque: {times: [1, 2.5, 4], values: [[2, -3, 6], [0, 3, 4], [1, 2, 2]]}',
                    'free')
-    assert found == Bounds(0.0, 7.0, ((1.0, 7.0), (2.5, 5.0), (4.0, 3.0)))
+    assert found[:3] == (0.0, 7.0, ((1.0, 7.0), (2.5, 5.0), (4.0, 3.0)))
+    assert 0.0 < found.share < 1.0
 
 
 def test_a_gradient_has_half_the_range_of_its_energy_and_on_an_orbit_a_torque():
