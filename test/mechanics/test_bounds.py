@@ -232,6 +232,9 @@ def test_a_run_that_is_not_a_number_has_no_angle():
 
 @pytest.mark.parametrize('effect', [
     'torque: {value: [0, 6, 8]}', 'torque: {times: [0], values: [[0, 6, 8]]}',
+    # 10 N at 1 m from the centre of mass
+    'force: {value: [10, 0, 0], at: [0.3, 0.8, -0.2]}',
+    'force: {value: [0, 8, -6], at: [-0.7, 0, 0.4]}',
     'gravity_gradient: {orbit: {rate: 2.0, normal: [0, 0, 1], toward: [1, 0, 0]}}'])
 @pytest.mark.parametrize('inertia', [(2.0, 3.0, 4.0), (4.0, 4.0 + 1e-6, 1e-6), (2.0, 2.0, 0.0)])
 def test_drives_turn_a_body_about_each_axis_by_the_moment_there(inertia, effect):
@@ -251,6 +254,21 @@ def test_drives_turn_a_body_about_each_axis_by_the_moment_there(inertia, effect)
     assert found == near(min(expected, size / least), rel=1e-8)
 
 
-def test_a_torque_in_world_axes_may_turn_a_body_about_any_axis():
-    slim = scene('free', 'torque: {value: [0, 6, 8], frame: world}', (4.0, 4.0, 1e-3))
+@pytest.mark.parametrize('effect', [
+    'torque: {value: [0, 6, 8], frame: world}',
+    'rotor: {axis: [1, 0, 0], inertia: 1, rate: 1, torque: 10}'])
+def test_what_is_not_constant_in_the_body_may_turn_it_about_any_axis(effect):
+    slim = scene('free', effect, (4.0, 4.0, 1e-3))
     assert drives(slim) == [(0.0, near(1e4, rel=1e-14))]
+
+
+def test_a_force_in_world_axes_turns_a_body_about_each_axis_by_its_lever_across_it():
+    """10 N at (0.8, -0.6, 0) m from the centre of mass, 1 m about the third axis."""
+    force = 'force: {value: [6, 0, 8], at: [1.1, -0.6, 0.4], frame: world}'
+    for inertia in ((4.0, 5.0, 6.0), (4.0, 4.0, 1e-3)):
+        moments = [6.0 / inertia[0], 8.0 / inertia[1], 10.0 / inertia[2]]
+        expected = min(math.hypot(*moments), 10.0 / min(inertia))
+        assert drives(scene('free', force, inertia)) == [(0.0, near(expected, rel=1e-14))]
+    along = force.replace('1.1, -0.6, 0.4', '0.3, 0, 1.4')
+    assert drives(scene('free', along, (4.0, 4.0, 1e-3))) == [
+        (0.0, near(math.hypot(2.5, 2.5), rel=1e-14))]

@@ -6,12 +6,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from rigid_body_sim.numerics.functions import hypot3
-from rigid_body_sim.numerics.vectors import minus
+from rigid_body_sim.numerics.functions import hypot, hypot3
+from rigid_body_sim.numerics.rotations import rotate_back
+from rigid_body_sim.numerics.vectors import cross, minus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import as_written, refuse_beside_hinge, trees_of
-from rigid_body_sim.scene.effects.protocol import Acting, Bounds, Cancelling, Effect, Pull
+from rigid_body_sim.scene.effects.protocol import (
+    Acting,
+    Bounds,
+    Cancelling,
+    Effect,
+    Pull,
+    Vector,
+    share_of_least,
+)
 from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.cancelling import cancelling_or_balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS
@@ -78,15 +87,25 @@ class Force(Effect):
 
         A force fixed in the world turns a free body by its torque only.
         """
-        size = hypot3(*(float(one.args[0]) for one in self.trees))
-        torque = size * self._reach(body, constraint)
-        still = constraint.holds_a_point and self.frame == 'world'
-        return Bounds(torque, 0.0) if still else Bounds(0.0, torque)
+        value = [float(one.args[0]) for one in self.trees]
+        lever, size = self._lever(body, constraint), hypot3(*value)
+        torque = size * hypot3(*lever)
+        if constraint.holds_a_point and self.frame == 'world':
+            return Bounds(torque, 0.0)
+        if constraint.axis is not None:
+            return Bounds(0.0, torque)
+        inertia = constraint.inertia(body)
+        x, y, z = rotate_back(*inertia.axes, *lever)
+        # about each axis the part of the lever across it counts, whatever way the force has
+        torques = size * hypot(y, z), size * hypot(z, x), size * hypot(x, y)
+        if self.frame == 'body':
+            torques = rotate_back(*inertia.axes, *cross(lever, value))
+        return Bounds(0.0, torque, share=share_of_least(torques, inertia.moments, torque))
 
-    def _reach(self, body: Body, constraint: Constraint) -> float:
-        """Return the lever of the force about what is held, or the centre of mass, m."""
+    def _lever(self, body: Body, constraint: Constraint) -> Vector:
+        """Return where the force acts, from what is held or from the centre of mass, m."""
         held = constraint.holds_a_point
-        return hypot3(*minus(self.at, constraint.point(body) if held else body.center_of_mass))
+        return minus(self.at, constraint.point(body) if held else body.center_of_mass)
 
     def cancelling(self, frame: Frame, start: State, horizon: float) -> Cancelling:
         """Return the size of its terms that may cancel, and their moment."""

@@ -123,7 +123,7 @@ class Torque(Effect):
         share = 1.0
         if self.frame == 'body' and constraint.axis is None:
             inertia = constraint.inertia(body)
-            share = max((share_of_least(rotate_back(*inertia.axes, *value), inertia.moments,
-                                        hypot3(*value))
-                         for value in self.values if any(value)), default=1.0)
+            share = max((share_of_least(rotate_back(*inertia.axes, *value), inertia.moments, size)
+                         for value, size in zip(self.values, sizes, strict=True) if size > 0.0),
+                        default=1.0)
         return Bounds(0.0, max(sizes), tuple(zip(self.times, sizes, strict=True)), share)
