@@ -21,6 +21,7 @@ from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
 POWERS = 1.0, 2.0        # of the angle that a body turns: those with which errors grow
+TURNED = 1.5             # times an error: more only one that turned round adds, not one that grows
 STEADY = 2.0 ** -10      # share of the angular velocity: a body spins steadily where less changes
 ROUNDING = 2.0 ** -40    # share of it below which changes are rounding
 LEAST = 8                # looks that show a steady spin
@@ -74,9 +75,10 @@ def later(scene, states, errors, longer, beside=None):
     It grows in proportion to time, as the number of steps does, or to the angle that a body turns
     which heat slows. Where a drive makes a body turn ever faster, errors go with the angle that it
     turns, or with a power of it up to the square: then those of the momentum, which add up, turn
-    the body. What the errors did in the second half of the run tells the power. Where heat has
-    made a body spin steadily, the errors made until then stay, and grow only by what they grew in
-    the second half.
+    the body. What the errors did in the second half of the run tells the power; where they went
+    through 0 and grow the other way, by how much they grew there counts. Where heat has made a
+    body spin steadily, the errors made until then stay, and grow only by what they grew in the
+    second half.
 
     Parameters
     ----------
@@ -100,6 +102,11 @@ def later(scene, states, errors, longer, beside=None):
     first = float(errors[:len(errors) // 2].max())
     grew = log(last / first) / log(so_far) if first > 0.0 else POWERS[1]
     angle = longer * (1.0 + faster * (longer - 1.0))
+    if beside is not None:
+        # in proportion to the angle, what the second half adds is a part of what is added in all
+        added = grown(states, beside) * so_far / (so_far - 1.0)
+        if added > TURNED * last:
+            last = added
     return last * power(angle, min(max(grew, POWERS[0]), POWERS[1]))
 
 

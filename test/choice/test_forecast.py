@@ -89,6 +89,20 @@ def test_errors_of_a_body_sped_up_from_rest(errors, longer, expected):
     assert found == pytest.approx(expected)
 
 
+@pytest.mark.parametrize(('turns_round', 'added'), [
+    # 0.15 at half time, -0.2 at the end, in three quarters of the angle; 0.25 to 1 is growth
+    (lambda t: t * (0.8 - t), 0.35 * 4.0 / 3.0), (lambda t: t * t, 1.0)])
+def test_an_error_that_goes_through_0_grows_on_by_what_it_grew(turns_round, added):
+    times, size = runs.looks(1.0), 1e-6
+    states = np.zeros((runs.LOOKS, 14))
+    states[:, 4], states[:, 7] = 1.0, times
+    beside = states.copy()
+    beside[:, 3] = 0.5 * size * turns_round(times)
+    errors = size * np.abs(turns_round(times))
+    found = forecast.later(coasting_scene(effects=[DRIVE]), states, errors, 2.0, beside)
+    assert found == near(4.0 * size * added, rel=0.05)
+
+
 SLOWER = 'drag: {linear: 0, angular: 1.0}'
 GOES_ON = math.exp(-4.0 * runs.looks(1.0)[3 * runs.QUARTER])
 OVER = 'torque: {times: [0, 1], values: [[0, 0, 1], [0, 0, 0]], frame: body}'
@@ -155,7 +169,7 @@ def test_the_angle_of_a_body_that_heat_slows_is_counted_from_look_to_look():
 @pytest.mark.parametrize(('inertia', 'torque', 'rate', 'accuracy', 'horizon'), [
     # expected 2.9e-8, error 2.2e-8; 3.9e-8 beside 2.4e-7 where errors went with time
     ('[0.01, 0.010000005, 1.0e-8]', '[0, 0, 0.02]', '[0.1, 0, 0]', 1e-6, 1.0),
-    # 1.4e-10 beside 3.6e-10; 2.1e-10 beside 2.2e-9
+    # 1.8e-10 beside 3.6e-10, through 0 on the way; 2.1e-10 beside 2.2e-9
     ('[1, 2, 1.5]', '[0, 0.2, 0]', '[1, 1, 1]', 1e-9, 1500.0)], ids=['needle', 'body'])
 def test_the_error_of_a_body_that_turns_ever_faster_goes_with_its_angle(
         inertia, torque, rate, accuracy, horizon):
