@@ -194,9 +194,9 @@ class Simulation:
         `start`, an array (14,), would have: the bits of :meth:`restart` and then :meth:`states`,
         where the start is at time 0. It is the quickest way to one state: under a microsecond for
         short runs, half of one where the same two arrays come each time. This simulation stays as
-        it is. Like the starts of :func:`ensemble`, a start is
-        taken as it is, with its own time, and the strikes of the scene are left out. Calls may not
-        overlap: each thread makes a runner of its own.
+        it is. Like the starts of :func:`ensemble`, a start is taken as it is, with its own time,
+        and the strikes of the scene are left out. Calls may not overlap: each thread makes a
+        runner of its own.
         """
         if not self._chosen.rests_on_start:
             return self._chosen.runner()
