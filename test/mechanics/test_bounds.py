@@ -263,12 +263,21 @@ def test_what_is_not_constant_in_the_body_may_turn_it_about_any_axis(effect):
 
 
 def test_a_force_in_world_axes_turns_a_body_about_each_axis_by_its_lever_across_it():
-    """10 N at (0.8, -0.6, 0) m from the centre of mass, 1 m about the third axis."""
-    force = 'force: {value: [6, 0, 8], at: [1.1, -0.6, 0.4], frame: world}'
+    """0.7 N, 7 m from the centre of mass."""
+    force = 'force: {value: [0.2, 0.3, 0.6], at: [2.3, 3, 6.4], frame: world}'
     for inertia in ((4.0, 5.0, 6.0), (4.0, 4.0, 1e-3)):
-        moments = [6.0 / inertia[0], 8.0 / inertia[1], 10.0 / inertia[2]]
-        expected = min(math.hypot(*moments), 10.0 / min(inertia))
+        moments = [0.7 * math.hypot(*across) / moment for across, moment in zip(
+            ((3.0, 6.0), (6.0, 2.0), (2.0, 3.0)), inertia, strict=True)]
+        expected = min(math.hypot(*moments), 4.9 / min(inertia))
         assert drives(scene('free', force, inertia)) == [(0.0, near(expected, rel=1e-14))]
-    along = force.replace('1.1, -0.6, 0.4', '0.3, 0, 1.4')
+    along = force.replace('2.3, 3, 6.4', '0.3, 0, 7.4')
     assert drives(scene('free', along, (4.0, 4.0, 1e-3))) == [
-        (0.0, near(math.hypot(2.5, 2.5), rel=1e-14))]
+        (0.0, near(math.hypot(4.9 / 4.0, 4.9 / 4.0), rel=1e-14))]
+
+
+def test_of_a_torque_in_pieces_the_one_that_turns_most_counts_and_none_does_not():
+    """0.05 N m across a slim body, 0.05 about it; where it is over, only the first."""
+    pieces = 'torque: {times: [0, 1], values: [[0.03, 0.04, 0], LAST]}'
+    for last, share in (('[0, 0, 0.05]', 1.0), ('[0, 0, 0]', 1e-3 / 4.0)):
+        found = drives(scene('free', pieces.replace('LAST', last), (4.0, 4.0, 1e-3)))
+        assert found[0] == (0.0, near(share * 0.05 / 1e-3, rel=1e-14))
