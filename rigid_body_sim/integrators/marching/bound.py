@@ -116,10 +116,10 @@ def _track(march, kernels, write, places, arrives):
     The march and the kernels of the equations are given by the names of their modules. A march
     that `arrives` has a kernel for final states.
     """
-    bindings = {name: f'{march}:{name}' for name in ('begin', 'march', 'between', 'VALUES')}
+    names = 'begin', 'march', 'between', 'arrive', 'VALUES'
+    bindings = {name: f'{march}:{name}' for name in names}
     bindings['start'], bindings['write'] = f'{kernels}:start', write
     for name, place in zip(('CONTROL', 'POINT', 'FOLLOWING', 'COUNTS'), places, strict=True):
         bindings[name] = f'{name} = {place}\n'
-    final = track.ARRIVING if arrives else track.BY_STEPS
-    bindings |= {name: binding.format(march) for name, binding in final.items()}
+    bindings['final'] = f'final = {"without_points" if arrives else "in_steps"}\n'
     return specialise(track, **bindings)

@@ -32,10 +32,6 @@ POINT = UNBOUND
 FOLLOWING = UNBOUND
 COUNTS = UNBOUND
 
-# bindings of `arrive` and `final`: for a march without an `arrive`, and with one
-BY_STEPS = {'arrive': 'arrive = None\n', 'final': 'final = in_steps\n'}
-ARRIVING = {'arrive': '{}:arrive', 'final': 'final = without_points\n'}
-
 STORED, STRIDE, COUNT, STORE = 0, 1, 2, 3    # after COUNTS
 CHECKPOINTS = 128                   # number of points that are kept
 SPACING = 32                        # stride at first: every n-th point is kept

@@ -19,8 +19,8 @@ from rigid_body_sim.scene.effects.protocol import (
     Effect,
     Pull,
     Vector,
-    share_of_least,
 )
+from rigid_body_sim.scene.effects.shares import share_of_least
 from rigid_body_sim.scene.expressions import actions, formulas, tree
 from rigid_body_sim.scene.expressions.cancelling import cancelling_or_balancing
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS

@@ -18,8 +18,8 @@ from rigid_body_sim.scene.effects.protocol import (
     Formulas,
     Potential,
     Pull,
-    share_of_least,
 )
+from rigid_body_sim.scene.effects.shares import share_of_least
 from rigid_body_sim.scene.expressions import actions, tree, vectors
 from rigid_body_sim.scene.expressions.source import TIME
 from rigid_body_sim.scene.frame import Frame

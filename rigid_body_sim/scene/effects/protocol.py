@@ -13,7 +13,6 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.expressions.tree import ZERO, Term
@@ -177,19 +176,6 @@ class Momentum(NamedTuple):
 
     kernel: str
     values: tuple[float, ...]
-
-
-def share_of_least(torques: Iterable[float], moments: Iterable[float], size: float) -> float:
-    """Return Bounds.share of a drive, from its largest torques about principal axes.
-
-    `size` is what all are together at most. About an axis without a moment nothing turns.
-    """
-    least = min(moment for moment in moments if moment > 0.0)
-    if not 0.0 < size < float('inf'):
-        return 1.0
-    pushes = (torque / size * (least / moment) if moment > 0.0 else 0.0
-              for torque, moment in zip(torques, moments, strict=True))
-    return min(1.0, hypot3(*pushes))
 
 
 class Bounds(NamedTuple):

@@ -23,8 +23,8 @@ from rigid_body_sim.scene.effects.protocol import (
     Effect,
     Pull,
     as_floats,
-    share_of_least,
 )
+from rigid_body_sim.scene.effects.shares import share_of_least
 from rigid_body_sim.scene.expressions.expression import EXPRESSIONS, is_constant
 from rigid_body_sim.scene.frame import Frame
 from rigid_body_sim.scene.schema import VECTOR, described, mapping_of

@@ -277,3 +277,12 @@ def test_a_march_without_points_is_lost_where_no_step_is_good(begin, rate):
     point[TIME], point[VALUES + 4] = begin, rate
     with np.errstate(all='ignore'):
         assert march.arrive(p, control, point, begin + 64.0, 9)[0] == LOST
+
+
+@pytest.mark.without_numba
+@pytest.mark.parametrize(('how', 'final'), [
+    ({'accuracy': 1e-9}, 'without_points'), ({'step': 0.1}, 'in_steps')])
+def test_a_final_state_needs_no_points_unless_steps_are_fixed(how, final):
+    scene = parse_scene(smooth_cases.text('driven_body'))
+    track = Stepped(scene, 'taylor', **how).at(how.get('accuracy'))._bound.track
+    assert track.final is getattr(track, final)

@@ -52,7 +52,7 @@ TRACK = specialise(
     begin=f'def begin(p, control, point):\n    point[{STEP}] = 0.5\n',
     between=f'def between(p, control, point, following, dt):\n    return point[{VALUES}], dt\n',
     write='def write(p, time, y, out):\n    out[0], (out[1], out[2]) = time, y\n',
-    **track.BY_STEPS)
+    arrive='arrive = None\n', final='final = in_steps\n')
 
 
 def prototype(good=math.inf):
