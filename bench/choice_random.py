@@ -17,7 +17,8 @@ The truth shares no formula with the package: Newton's and Euler's equations in 
 full tensor, by extrapolation with 64-bit mantissas (truth.py); Python evaluates the expressions.
 The floor is what half an ulp on each number of the start does, by finite differences of the truth.
 The error is the largest at 64 uneven times up to the duration that is drawn, or up to where 2000
-steps of the truth lead: whatever turns more often than a thousand times ends there. Scenes with
+steps of the truth lead: whatever turns more often than a thousand times ends there. Where a finer
+run says that it is much larger between two of them, it is looked at there, too. Scenes with
 expressions run in plain Python, in a process of their own: their kernels would take longer to
 compile than to run, and the bits are the same. With --keep a run that was stopped resumes. Exit 1
 unless on every scene

@@ -15,6 +15,8 @@ from random_scenes.new_language import MOTIONS
 from random_scenes.truth import HALF_ULP, MOVED, TooMuchWork, Truth
 from random_scenes.wide import WIDE, angle
 from rigid_body_sim.compilation.environment import HAVE_NUMBA
+from rigid_body_sim.errors import NotConverged
+from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
@@ -27,6 +29,9 @@ LONGEST_TRUTH = 600      # the truth of a scene
 STEPS = 2000             # of the truth, in all copies: what they do not reach is left out
 ENOUGH = 16              # looks that were reached; of fewer, the horizon is drawn nearer
 LESS = 2.0 ** 11, 2.0 ** 3    # half ulps by which a start is moved that is magnified: to 12 mrad
+AMONG, EARLY = 2048, 1e-6    # times evenly, and as many from this share of the duration on
+MUCH_FINER = 2.0 ** -7   # share of a tolerance
+BY_FAR = 1.5             # times as much as at looks
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
 
 
@@ -95,8 +100,13 @@ def tried(number, seed, draw=drawn):
     for accuracy in ACCURACIES:
         simulation = Simulation(scene, accuracy=accuracy, horizon=duration, rate=1.0 / duration)
         choice, states = simulation.choice, simulation.states(times)
-        error = max(angle(best, own.astype(WIDE))
-                    for best, own in zip(attitudes, states.orientation, strict=True))
+        error = _error(attitudes, states)
+        between = _worst_between(simulation, times)
+        if between is not None:
+            _within(LONGEST_TRUTH, 'the truth')
+            _, there, floors, _ = _followed(scene, between, math.inf)
+            error, floor = max(error, _error(there, simulation.states(between))), max(
+                floor, *floors)
         residual = _unbalanced(simulation, jumped)
         expected, size = choice.expected_error, max(error, floor)
         expected = np.inf if expected is None else expected    # nothing is known
@@ -111,6 +121,40 @@ def tried(number, seed, draw=drawn):
         yield (f'{number:4} {what[:44]:44}{duration:7.2f}{accuracy:8.0e}{choice.method:>9}'
                f'{choice.tolerance:8.0e}{expected:9.1e}{error:9.1e}{floor:9.1e}{residual:9.1e}'
                f'{marks}'), *map(bool, verdicts)
+
+
+def _error(attitudes, states):
+    """Return the largest error of states beside the true attitudes, rad."""
+    return max(angle(best, own.astype(WIDE))
+               for best, own in zip(attitudes, states.orientation, strict=True))
+
+
+def _worst_between(simulation, times):
+    """Return the time at which a run errs most by far, beside a finer one; None if at a look.
+
+    Errors of a body that slows down may rise and fall between two looks. Where the finer run takes
+    too much work nothing is found.
+
+    Returns
+    -------
+    array (1,) or None
+        s.
+    """
+    choice, end = simulation.choice, float(times[-1])
+    if choice.method == 'exact':
+        return None
+    among = np.unique(np.concatenate((np.linspace(0.0, end, AMONG)[1:],
+                                      np.geomspace(EARLY * end, end, AMONG))))
+    try:
+        finer = Simulation(simulation.scene, choice.method, rate=simulation.rate, horizon=end,
+                           accuracy=max(choice.tolerance * MUCH_FINER, FINEST))
+        apart = [[angle(one.astype(WIDE), other.astype(WIDE)) for one, other in zip(
+            finer.states(at).orientation, simulation.states(at).orientation, strict=True)]
+            for at in (among, times)]
+    except NotConverged:
+        return None
+    worst = int(np.argmax(apart[0]))
+    return among[worst:worst + 1] if apart[0][worst] > BY_FAR * max(apart[1]) else None
 
 
 def _unbalanced(simulation, jumped):

@@ -22,6 +22,7 @@ from rigid_body_sim.scene.state import ANGULAR_VELOCITY
 
 POWERS = 1.0, 2.0        # of the angle that a body turns: those with which errors grow
 TURNED = 1.5             # times an error: more only one that turned round adds, not one that grows
+SLOWED = 0.5             # share of its largest rate that a body has left that has slowed down
 STEADY = 2.0 ** -10      # share of the angular velocity: a body spins steadily where less changes
 ROUNDING = 2.0 ** -40    # share of it below which changes are rounding
 LEAST = 8                # looks that show a steady spin
@@ -139,6 +140,21 @@ def turned_later(scene, states, longer):
         yet = min(yet, 0.25 * last / (before - last))
     # the first rate counts up to the first look, too
     return min(longer, 1.0 + yet * n * last / float(turned[-1] + rates[0]))
+
+
+def has_slowed(scene, states):
+    """Return whether heat slows a body to less than SLOWED of its largest rate in a run.
+
+    Parameters
+    ----------
+    states : array (n, 14)
+        The run, at looks.
+    """
+    if not makes_heat(scene):
+        return False
+    rates = lengths(states[:, ANGULAR_VELOCITY])
+    first = hypot3(*scene.initial.angular_velocity.tolist())
+    return float(rates[-1]) < SLOWED * max(first, float(rates.max()))
 
 
 def spins_steadily(scene, states):

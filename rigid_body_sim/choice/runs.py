@@ -50,31 +50,55 @@ def run(scene, prototype, vector, times, allowances=None, over=-math.inf):
     ------
     TooMuchWork
     """
-    def allowed(solver, until):
-        found = solver.allowance(until)
-        if found and allowances is not None:
-            allowances.append(found)
-
-    out = np.full((len(times), STATE_SIZE), math.nan)
+    out, first, final = np.full((len(times), STATE_SIZE), math.nan), 0, float(times[-1])
     try:
-        solver, first = prototype.start(vector), 0
-        for strike in scene.strikes:
-            if strike.time <= over:
-                continue
-            if strike.time > times[-1]:
-                break
-            last = int(np.searchsorted(times, strike.time))
+        for solver, end in _solvers(scene, prototype, vector, final, over):
+            last = len(times) if end == math.inf else int(np.searchsorted(times, end))
             solver.states(times[first:last], out[first:last])
-            struck, first = prototype.start(_struck(scene, strike, solver)), last
-            allowed(solver, strike.time)
-            solver = struck
-        solver.states(times[first:], out[first:])
-        allowed(solver, float(times[-1]))
+            first, found = last, solver.allowance(min(end, final))
+            if found and allowances is not None:
+                allowances.append(found)
     except TooMuchWork:
         raise
     except NotConverged:
         out[:] = math.nan
     return out
+
+
+def step_ends(scene, prototype, vector, until, most):
+    """Return the times (s) before another at which the steps of a run end, rising.
+
+    None stands for more than `most` of them, and for a run that did not converge.
+
+    Raises
+    ------
+    TooMuchWork
+    """
+    found = []
+    try:
+        for solver, end in _solvers(scene, prototype, vector, until):
+            ends = solver.step_ends(min(end, until), most - len(found))
+            if ends is None:
+                return None
+            found += ends
+    except TooMuchWork:
+        raise
+    except NotConverged:
+        return None
+    return found
+
+
+def _solvers(scene, prototype, vector, until, over=-math.inf):
+    """Yield the solvers up to a time (s), started one after the other; each with its end, s.
+
+    A strike ends all but the last one, whose end is infinite.
+    """
+    solver = prototype.start(vector)
+    for strike in scene.strikes:
+        if over < strike.time <= until:
+            yield solver, strike.time
+            solver = prototype.start(_struck(scene, strike, solver))
+    yield solver, math.inf
 
 
 def _struck(scene, strike, solver):

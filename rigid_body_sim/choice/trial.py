@@ -166,8 +166,12 @@ class Trial(Foretelling):
         here, finer = self._states(tolerance), self._reference(tolerance)
         if finer is None:
             return None
+        errors = self._apart(tolerance, finer)
         beside = None if self._flies else self._states(finer)
-        return self._later(here, self._apart(tolerance, finer), beside)
+        error = self._later(here, errors, beside)
+        if not error <= self._accuracy:
+            return error
+        return self._later(here, errors + self._between_looks(tolerance, finer, errors), beside)
 
     def _next(self, here, error, good, bad):
         """Return the tolerance to try after one with an error."""

@@ -27,6 +27,7 @@ class Foretelling(TrialRuns):
         if errors is None or not float(errors[0]) < math.inf:
             return self._untold()
         here, last, finest = self._states(tolerance), 0.0, finer or tolerance
+        between = self._between_looks(tolerance, below, errors) if below else 0.0
         beside = None if below is None or self._allowed else self._states(below)
         if float(errors.max()) < MAGNIFIED:
             best, prototype = self._states(finest), self.prototype.at(finest, self._most)
@@ -51,6 +52,7 @@ class Foretelling(TrialRuns):
         for one, error, since in self._allowed:
             if one in (tolerance, finer):    # both allow it themselves, and do not differ by it
                 errors = np.maximum(errors, np.where(times >= since, error, 0.0))
+        errors = errors + between
         last = max(last, self._later(here, errors, beside))
         return forecast.forecast(np.maximum(errors, lost), times, accuracy, horizon, last)
 

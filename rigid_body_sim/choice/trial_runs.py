@@ -29,6 +29,7 @@ ALONE = 16          # factor on the steps of the only method there is: a disk tu
 COARSER = 8.0   # factor between the tolerance of the table and that of a scene, either way
 NEAR = 2.0 ** -4     # largest such share: a run that is less fine does not tell the error
 FINER_ONES = FINER, NEAR, 0.25    # shares that are tried in turn where runs take too much work
+ENDS = 2048    # of steps, at most, at which runs are compared, too
 AROUND = 4      # finer runs whose mean rounds half as much as each of them
 PAIR = 2        # least number of them
 MOMENTA = 0.1   # share at which relative errors of momenta count as errors, rad
@@ -83,7 +84,7 @@ class TrialRuns:
         if self._times is not None and self._times[-1] == time:
             return    # what ran stands
         self._longer, self._times = self._horizon / time, runs.looks(time)
-        self._runs, self._momenta = {}, {}
+        self._runs, self._momenta, self._at_ends = {}, {}, {}
         self._allowed = []    # (tolerance, error, since): what runs allowed themselves
 
     def _pace_seen(self):
@@ -275,6 +276,34 @@ class TrialRuns:
         if self._flies:
             shares = np.maximum(shares, comparison.velocities_apart(here, best, speed))
         return np.maximum(comparison.apart(here, best), MOMENTA * shares)
+
+    def _between_looks(self, tolerance, finer, errors):
+        """Return what errors at the ends of steps add to those at looks, rad, shape (LOOKS,).
+
+        A long step errs most at its end. Where heat slows a body, that error may have gone before
+        the next look, and so may those of the time before it slowed.
+        """
+        if not forecast.has_slowed(self._scene, self._states(tolerance)):
+            return np.zeros(len(errors))
+        if (tolerance, finer) not in self._at_ends:
+            self._at_ends[tolerance, finer] = self._apart_at_ends(tolerance, finer)
+        errors = np.maximum.accumulate(errors)
+        return np.maximum(self._at_ends[tolerance, finer], errors) - errors
+
+    def _apart_at_ends(self, tolerance, finer):
+        """Return the largest error at the ends of steps before each look, rad, beside a finer run.
+
+        It is 0 where there are too many of them, or none.
+        """
+        largest, start = np.zeros(len(self._times)), self._scene.initial.vector
+        coarse, fine = (self.prototype.at(one, self._most) for one in (tolerance, finer))
+        with contextlib.suppress(TooMuchWork):
+            ends = runs.step_ends(self._scene, coarse, start, float(self._times[-1]), ENDS)
+            if ends:
+                apart = comparison.apart(*(runs.run(self._scene, one, start, np.array(ends))
+                                           for one in (coarse, fine)))
+                np.maximum.at(largest, np.searchsorted(self._times, ends), apart)
+        return np.maximum.accumulate(largest)
 
     def _later(self, states, errors, beside=None):
         """Return the error (rad) at the horizon after those of a run, beside another one.

@@ -22,6 +22,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.integrators.marching.course import NO_STEP
 from rigid_body_sim.numerics.functions import cos, exp, hypot, hypot3, log, sin
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
@@ -215,8 +216,9 @@ class Departing:
         return time if time < self._near.end else self._later().entries_until(time)
 
     def step_at(self, time):
-        """Return the length (s) of the step that holds a time (s)."""
-        return math.inf if time < self._near.end else self._later().step_at(time)
+        """Return when the step that holds a time (s) begins and ends, s."""
+        end = self._near.end
+        return (-math.inf, end) if time < end else self._later().step_at(time)
 
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""
@@ -281,10 +283,10 @@ class Arriving:
         return []
 
     def step_at(self, time):
-        """Return the length (s) of the step that holds a time (s)."""
+        """Return when the step that holds a time (s) begins and ends, s."""
         self._reach(time)
         rests = self._rest is not None and time >= self._look
-        return math.inf if rests else self._march.step_at(time)
+        return NO_STEP if rests else self._march.step_at(time)
 
     def state(self, time, out):
         """Fill `out` with the state at a time (s) not before the start."""

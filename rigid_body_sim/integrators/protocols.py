@@ -258,8 +258,10 @@ class Course(Protocol):
     def states(self, times: np.ndarray, out: np.ndarray) -> None:
         """Fill the rows of `out` as `state` does, for times (s) in any order."""
 
-    def step_at(self, time: float) -> float:
-        """Return the length (s) of the step that holds a time (s); infinite where none does.
+    def step_at(self, time: float) -> tuple[float, float]:
+        """Return when the step that holds a time (s) begins and ends, s.
+
+        The beginning is infinite where no step holds it, and the end where none follows.
 
         Only courses that do not tell events are asked.
         """

@@ -12,6 +12,7 @@ depend on which other times were asked. Stepped does not apply the strikes of a 
 simulation/simulation.py starts a new solver after each strike.
 """
 
+import bisect
 import contextlib
 import functools
 import math
@@ -306,6 +307,22 @@ class Stepped:
         """Return (error, since) as Solver.allowance does (protocols.py): on a plane only."""
         on_plane = self.scene.constraint.mechanism is Mechanism.PLANE
         return self._course.allowance(until) if on_plane else None
+
+    def step_ends(self, until, most):
+        """Return the times (s) after the start and before another at which steps or kinks end.
+
+        None stands for more than `most` of them. Of a course that tells events there are none.
+        """
+        course = self._course
+        if course.TELLS_EVENTS:
+            return []
+        kinks, found, time = [*course.kinks(until), math.inf], [], self.begin
+        while len(found) <= most:
+            time = min(course.step_at(time)[1], kinks[bisect.bisect_right(kinks, time)])
+            if not time < until:
+                return found
+            found.append(time)
+        return None
 
     def entries(self, time):
         """Return the ledger's entries from the start to a time, shape (5,), longer on a plane.

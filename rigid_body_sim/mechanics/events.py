@@ -130,9 +130,9 @@ class Watcher:
     drive : float
         Rate that drives may add in a second, rad/s^2 (mechanics/bounds.py).
     step_at : callable, optional
-        Where these bounds may be exceeded: the length (s) of the step of the method that holds a
-        time. Looks are then at most BLINK and a share of a step apart: what nothing bounds may
-        turn a body back and forth at any rate, and the steps follow it.
+        Where these bounds may be exceeded: when the step of the method that holds a time begins
+        and ends, s. Looks are then at most BLINK and a share of a step apart: what nothing bounds
+        may turn a body back and forth at any rate, and the steps follow it.
     """
 
     def __init__(self, solver, watched, start, swing, drive, step_at=None):
@@ -173,7 +173,8 @@ class Watcher:
             blind = RADIANS_BLIND * self._spacing < least * RADIANS_BETWEEN_LOOKS
             spacing = self._spacing
             if self._step_at is not None and not blind:
-                spacing = min(spacing, SHARE_OF_STEP * self._step_at(self._time))
+                begin, end = self._step_at(self._time)
+                spacing = min(spacing, SHARE_OF_STEP * (end - begin))
             time = min(until, self._time + max(spacing, 32.0 * least if blind else least))
             values = self._look(time)
             if blind:

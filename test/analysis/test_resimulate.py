@@ -56,6 +56,7 @@ def test_commands_resets_and_gaps_are_reproduced_to_the_bit(commanded, capsys):
     assert capsys.readouterr().out == 'identical, 2161 states (8644 messages)\n'
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('known', [None, 3e-9])
 def test_the_method_that_auto_chose_is_taken_again_whatever_was_known_of_its_error(known):
     """Nobody knew where a strike comes later than trials go; `auto` would choose anew."""

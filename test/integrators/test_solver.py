@@ -163,6 +163,22 @@ def test_events_are_those_after_a_time():
     assert Stepped.events(of, 2.0, 3.0, 0.25) == [(3.25, 'c')]
 
 
+@pytest.mark.parametrize(('kinks', 'until', 'most', 'found'), [
+    ([], 5.5, 3, [3.0, 4.0, 5.0]), ([], 5.0, 2, [3.0, 4.0]), ([], 5.5, 2, None),
+    ([2.5, 4.0], 4.5, 9, [2.5, 3.0, 4.0])])
+def test_steps_end_where_the_next_one_or_a_kink_is(kinks, until, most, found):
+    """They are a second long, from 2 s on."""
+    course = types.SimpleNamespace(
+        TELLS_EVENTS=False, kinks=lambda until: [time for time in kinks if time < until],
+        step_at=lambda time: (math.floor(time), math.floor(time) + 1.0))
+    of = types.SimpleNamespace(_course=course, begin=2.0)
+    assert Stepped.step_ends(of, until, most) == found
+    course.step_at = lambda time: (-math.inf, math.inf)    # of a body that rests
+    assert Stepped.step_ends(of, until, most) == [time for time in kinks if time < until]
+    course.TELLS_EVENTS = True
+    assert Stepped.step_ends(of, until, most) == []
+
+
 def test_what_fails_in_a_body_of_many_names_it():
     with pytest.raises(NotConverged, match=r'^body 7: too far$') as found, _naming(7):
         raise NotConverged('too far', 2.5)

@@ -107,6 +107,7 @@ def test_fixed_points_stay(constraint):
     assert np.abs(balance.acceleration + rotate(*vector[1:5], *carried)).max() < 1e-14
 
 
+@pytest.mark.without_numba
 def test_closed_forms_have_the_same_reactions():
     for name, motion, size in (('heavy_top', lagrange_top, 3), ('kater_pendulum', pendulum, 6)):
         simulation = Simulation(name)

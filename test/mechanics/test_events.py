@@ -152,7 +152,7 @@ def test_between_two_looks_the_body_turns_by_a_fifth_of_a_radian(rate, swing, dr
 def test_where_nothing_bounds_what_acts_looks_are_a_blink_and_a_quarter_of_a_step_apart_at_most(
         steps, rate, step):
     found, solver = watcher(lambda time: 1.0, rate=rate,
-                            step_at=None if steps is None else lambda time: steps)
+                            step_at=None if steps is None else lambda time: (0.0, steps))
     found.events(1.0)
     assert solver.asked[1] - solver.asked[0] == near(step, rel=1e-12)
     assert solver.asked[-1] == 1.0
@@ -160,15 +160,15 @@ def test_where_nothing_bounds_what_acts_looks_are_a_blink_and_a_quarter_of_a_ste
 
 def test_a_body_that_turns_back_ever_faster_is_looked_at_as_often_as_its_method_steps():
     """cos(t^3) has its k-th zero at ((k + 1/2) pi)^(1/3); it turns by no angle worth a look."""
-    found, _ = watcher(lambda time: math.cos(time ** 3), step_at=lambda time: 1.0 / (
-        1.0 + 3.0 * time * time))
+    found, _ = watcher(lambda time: math.cos(time ** 3), step_at=lambda time: (
+        0.0, 1.0 / (1.0 + 3.0 * time * time)))
     times = [((k + 0.5) * math.pi) ** (1.0 / 3.0) for k in range(40)]
     assert [time for time, _, _ in found.events(5.0)] == pytest.approx(times, abs=1e-14)
 
 
 @pytest.mark.parametrize('steps', [1e-7, 1e-3])
 def test_short_steps_are_no_turn_between_two_looks(steps):
-    found, solver = watcher(np.cos, rate=1.0, step_at=lambda time: steps)
+    found, solver = watcher(np.cos, rate=1.0, step_at=lambda time: (0.0, steps))
     times = [time for time, _, _ in found.events(2.0, tick=1.0)]
     assert times == [pytest.approx(0.5 * math.pi, abs=1e-14)]
     assert len(solver.asked) < 2 * events.LOOKS_A_TICK + 100

@@ -29,6 +29,7 @@ def test_after_a_command_nothing_is_foretold(command):
         assert simulation.expected_error == 1e-13
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize(('foretold', 'allowed', 'told'), [
     (1e-13, None, 1e-13), (1e-13, (1e-9, 0.5), 1e-9), (1e-8, (1e-9, 0.5), 1e-8),
     (None, (1e-9, 0.5), 1e-9), (None, None, None)])

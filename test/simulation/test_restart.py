@@ -41,6 +41,7 @@ def with_start(scene, start):
     return dataclasses.replace(scene, initial=State(np.array(start)))
 
 
+@pytest.mark.without_numba
 @pytest.mark.parametrize('name', ['tennis_racket', 'heavy_top', 'kater_pendulum', 'needle',
                                   'driven_body', 'billiard_low', 'baseball_bat'])
 def test_a_closed_form_begun_anew_has_the_bits_of_a_new_simulation(name):

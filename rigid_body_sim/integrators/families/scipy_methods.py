@@ -89,10 +89,10 @@ class _Course:
         return []
 
     def step_at(self, time):
-        """Return the length (s) of the step that holds a time (s)."""
+        """Return when the step that holds a time (s) begins and ends, s."""
         self.state(time, np.empty(STATE_SIZE))
         k = bisect.bisect_left(self._reached, time)
-        return self._reached[k] - (self._reached[k - 1] if k else self._begin)
+        return self._reached[k - 1] if k else self._begin, self._reached[k]
 
     def _enter(self, begin, y):
         """Start the solver of the stretch that begins at a time."""

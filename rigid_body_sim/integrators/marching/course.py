@@ -13,11 +13,20 @@ import numpy as np
 from rigid_body_sim.compilation.memory import memory
 from rigid_body_sim.compilation.threads import look
 from rigid_body_sim.errors import NotConverged
-from rigid_body_sim.integrators.marching.points import FIXED, LOST, REACHED, TIME, VALUES
+from rigid_body_sim.integrators.marching.points import (
+    FIXED,
+    LOST,
+    ORIGIN,
+    REACHED,
+    STEP,
+    TIME,
+    VALUES,
+)
 from rigid_body_sim.integrators.marching.work import Doublings, Work
 from rigid_body_sim.scene.state import STATE_SIZE
 
 FOR_EVER = (math.inf,)
+NO_STEP = -math.inf, math.inf    # what holds a time where nothing is stepped
 AT_ONCE = 4096    # states of one call of a kernel
 
 
@@ -48,12 +57,14 @@ class Course:
         return []
 
     def step_at(self, time):
-        """Return the length (s) of the step that holds a time (s)."""
+        """Return when the step that holds a time (s) begins and ends, s."""
         self.state(time, np.empty(STATE_SIZE))
         piece = self._pieces[bisect.bisect_right(self._ends, time)]
         control, point, following = self._bound.parts_of(piece)
-        step = float(following[TIME] - point[TIME])
-        return step if step > 0.0 else float(control[FIXED])    # marching/fixed.py
+        begin, end = float(point[TIME]), float(following[TIME])
+        if end > begin:
+            return begin, end
+        return begin, float(control[ORIGIN] + (point[STEP] + 1.0) * control[FIXED])    # fixed.py
 
     def _first_piece(self):
         """Append the piece at the start, not filled yet; return what track.first_piece takes."""

@@ -21,11 +21,9 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.euler import INVERSE
 from rigid_body_sim.integrators.marching import sides
-from rigid_body_sim.integrators.marching.course import Course
+from rigid_body_sim.integrators.marching.course import NO_STEP, Course
 from rigid_body_sim.integrators.marching.dips import dip
 from rigid_body_sim.integrators.marching.points import (
-    FIXED,
-    ORIGIN,
     SCALES,
     STEP,
     TIME,
@@ -95,14 +93,6 @@ class Within(Course):
         if head is not None and self._adapts:
             bound.set_head(piece, head)
 
-    def step_end(self, time):
-        """Return the end of the step that holds a time (s)."""
-        self.state(time, np.empty(STATE_SIZE))
-        control, point, following = self._bound.parts_of(self._pieces[0])
-        if following[TIME] > point[TIME]:
-            return float(following[TIME])
-        return float(control[ORIGIN] + (point[STEP] + 1.0) * control[FIXED])    # marching/fixed.py
-
     def head(self, time):
         """Return planned step and scales of the step that holds a time (s), an array."""
         self.state(time, np.empty(STATE_SIZE))
@@ -117,8 +107,8 @@ class Resting:
         self._vector = vector
 
     def step_at(self, time):
-        """Return infinity: it takes no steps."""
-        return math.inf
+        """Return NO_STEP: it takes none."""
+        return NO_STEP
 
     def state(self, time, out):
         """Fill `out` with the state at a time (s)."""
@@ -171,7 +161,7 @@ class Switched:
             out[rows] = part
 
     def step_at(self, time):
-        """Return the length (s) of the step that holds a time (s)."""
+        """Return when the step that holds a time (s) begins and ends, s."""
         self._reach(time)
         return self._course(self._place(time)).step_at(time)
 
@@ -256,7 +246,7 @@ class Switched:
         for mode in (1.0, -1.0):
             trial = [*modes[:k], mode, *modes[k + 1:]]
             course = Within(self._start(begin, vector), self._bound, trial, head)
-            time = begin + (course.step_end(begin) - begin) * 2.0 ** -10
+            time = begin + (course.step_at(begin)[1] - begin) * 2.0 ** -10
             out = np.empty(STATE_SIZE)
             course.state(time, out)
             side = self._sides(out, trial)[k]
@@ -268,7 +258,7 @@ class Switched:
         """Look at the switches in the step ahead; enter the next stretch if one changes."""
         place = len(self._stretches) - 1
         stretch, course = self._stretches[place], self._course(place)
-        end = self._end_at_rest(stretch) if stretch.rests else course.step_end(self._seen)
+        end = self._end_at_rest(stretch) if stretch.rests else course.step_at(self._seen)[1]
         end = min(end, stretch.end)
         out, before = np.empty(STATE_SIZE), self._seen
         looks = self._looks(course, end)

@@ -477,6 +477,7 @@ def test_euler_disk_ends_with_the_exponent_of_its_friction(effect, a, left):
 # -- a patch of contact -----------------------------------------------------------------------
 
 
+@pytest.mark.without_numba
 def test_patch_stops_a_spin_about_the_normal_where_it_says():
     sim = simulation(BALL, 'sliding_friction: {mu: 0.3}, spinning_friction: {radius: 0.002}',
                      '{angular_velocity: [0, 0, 50]}', accuracy=1e-9)

@@ -9,6 +9,7 @@ import pytest
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching import switched
+from rigid_body_sim.integrators.marching.course import FOR_EVER
 from rigid_body_sim.integrators.marching.points import FIXED, ORIGIN, SCALES, STEP, TIME, VALUES
 from rigid_body_sim.integrators.marching.switched import (
     KEPT,
@@ -94,8 +95,8 @@ class Course:
         for time, row in zip(times, out, strict=True):
             self.state(time, row)
 
-    def step_end(self, time):
-        return math.floor(time) + 1.0
+    def step_at(self, time):
+        return math.floor(time), math.floor(time) + 1.0
 
     def head(self, time):
         return np.array([time, 1e-9, 4.0, 5.0])
@@ -210,8 +211,8 @@ def test_a_switch_that_begins_on_its_kink_goes_where_the_march_drives_it(
             super().__init__(lambda time: drive * (time - 3.0))
             tried.append((start.begin, modes, head))
 
-        def step_end(self, time):
-            return time + 1.0
+        def step_at(self, time):
+            return time, time + 1.0
 
         def state(self, time, out):
             assert time == 3.0 + 2.0 ** -10
@@ -268,7 +269,8 @@ def test_the_end_of_a_step_is_that_of_its_point_or_of_a_fixed_step(following, en
     asked = []
     of = types.SimpleNamespace(_pieces=['piece'], state=lambda time, out: asked.append(time),
                                _bound=types.SimpleNamespace(parts_of=lambda piece: parts))
-    assert Within.step_end(of, 2.2) == end
+    of._ends = FOR_EVER
+    assert Within.step_at(of, 2.2) == (2.0, end)
     point[STEP:] = 7.0, 1.0, 2.0, 3.0
     head = Within.head(of, 2.1)
     assert head.tolist() == [7.0, 1.0, 2.0, 3.0]

@@ -113,6 +113,7 @@ def test_states_are_continuous_at_the_nodes(top):
     assert np.abs(np.diff(out[:, 1:5], axis=0)).max() < 60e-6    # omega/2 times 1e-6 s
 
 
+@pytest.mark.without_numba
 def test_the_norm_of_the_quaternion_stays():
     scene = parse_scene(smooth_cases.text('asymmetric_heavy_top'))
     out = state(scene, 100.0, step=0.01)

@@ -58,6 +58,7 @@ def test_products_of_series_are_complete():
             second.add(b[k + 1])
 
 
+@pytest.mark.without_numba
 def test_a_step_errs_by_the_next_order():
     scene = parse_scene(smooth_cases.text('driven_body'))
     errors = []
