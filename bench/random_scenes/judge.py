@@ -29,7 +29,7 @@ LONGEST_TRUTH = 600      # the truth of a scene
 STEPS = 2000             # of the truth, in all copies: what they do not reach is left out
 ENOUGH = 16              # looks that were reached; of fewer, the horizon is drawn nearer
 LESS = 2.0 ** 11, 2.0 ** 3    # half ulps by which a start is moved that is magnified: to 12 mrad
-AMONG, EARLY = 2048, 1e-6    # times evenly, and as many from this share of the duration on
+AMONG, EARLY = 512, 1e-6    # times evenly, and as many from this share of the duration on
 MUCH_FINER = 2.0 ** -7   # share of a tolerance
 BY_FAR = 1.5             # times as much as at looks
 SENSELESS = 1e-2         # rad: a floor above it leaves nothing to be asked
@@ -129,6 +129,11 @@ def _error(attitudes, states):
                for best, own in zip(attitudes, states.orientation, strict=True))
 
 
+def _chords(own, other):
+    """Return the distances of quaternions, shape (n, 4), to the nearer one of each other pair."""
+    return np.minimum(*(np.sqrt(((own - sign * other) ** 2).sum(axis=1)) for sign in (1.0, -1.0)))
+
+
 def _worst_between(simulation, times):
     """Return the time at which a run errs most by far, beside a finer one; None if at a look.
 
@@ -148,13 +153,12 @@ def _worst_between(simulation, times):
     try:
         finer = Simulation(simulation.scene, choice.method, rate=simulation.rate, horizon=end,
                            accuracy=max(choice.tolerance * MUCH_FINER, FINEST))
-        apart = [[angle(one.astype(WIDE), other.astype(WIDE)) for one, other in zip(
-            finer.states(at).orientation, simulation.states(at).orientation, strict=True)]
-            for at in (among, times)]
+        apart = [_chords(finer.states(at).orientation, simulation.states(at).orientation)
+                 for at in (among, times)]
     except NotConverged:
         return None
     worst = int(np.argmax(apart[0]))
-    return among[worst:worst + 1] if apart[0][worst] > BY_FAR * max(apart[1]) else None
+    return among[worst:worst + 1] if apart[0][worst] > BY_FAR * apart[1].max() else None
 
 
 def _unbalanced(simulation, jumped):

@@ -62,12 +62,12 @@ def total_pull(scene):
     Returns
     -------
     Total or None
-        None where something acts that is not of this kind, or changes in time, and where another
-        point than the body's origin is held, or one that moves.
+        None where something acts that is not of this kind, or changes in time, and where the
+        point that is held moves.
     """
-    if not _turns_about_origin(scene):
-        return None
     frame, pulls = scene.frame, []
+    if frame.path is not None:
+        return None
     for effect in scene.acting:
         field = effect.uniform_field
         if field is not None:
@@ -80,16 +80,6 @@ def total_pull(scene):
             return None
         pulls.append(pull)
     return total_of(pulls)._replace(force=_sums([pull.force for pull in pulls if pull.force]))
-
-
-def _turns_about_origin(scene):
-    """Return whether no other point than the body's origin is held, and none that moves.
-
-    A hinge may hold any line.
-    """
-    frame = scene.frame
-    return frame.path is None and (
-        scene.constraint.axis is not None or frame.moves or not any(frame.point))
 
 
 def _sums(vectors):
@@ -128,7 +118,7 @@ def load_of(scene):
 def weight_of(scene):
     """Return g (m/s^2, exactly) of a held body whose load is M g along -z, else None."""
     if scene.weight is not None:    # one product, no exact sums
-        return scene.weight if _turns_about_origin(scene) else None
+        return scene.weight if scene.frame.path is None else None
     load = load_of(scene)
     if load is None or load[0] or load[1] or load[2] > 0:
         return None

@@ -73,7 +73,7 @@ def takes_any_moments(motion, scene):
     """Return whether a motion absorbs a scene also if no two of its moments are equal."""
     moments = scene.constraint.inertia(scene.body).moments
     apart = tuple(moment * (1.0 + k * NEARLY) for k, moment in enumerate(moments))
-    return motion.absorbs(_with_inertia(scene, apart))
+    return _has_inertia(scene) and motion.absorbs(_with_inertia(scene, apart))
 
 
 def is_exact(motion, scene):
@@ -100,7 +100,8 @@ def only_rounding(scene, solved):
 def nearly_absorbing(scene, horizon):
     """Return the Nearly of a scene that is nearly symmetric, or None.
 
-    None also where the body turns too often in the horizon for the error to be summed up.
+    None also where the body turns too often in the horizon for the error to be summed up, and
+    where neither the centre of mass nor the body's origin is held.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def nearly_absorbing(scene, horizon):
     """
     equal = _made_equal(scene.constraint.inertia(scene.body).moments)
     off = _off_axis(scene, equal)
-    if not differ(scene, equal) and not any(off):
+    if not (_has_inertia(scene) and (differ(scene, equal) or any(off))):
         return None
     symmetric = _symmetric(scene, equal, off)
     motion = absorbing_motion(symmetric)
@@ -234,6 +235,12 @@ def _symmetric(scene, equal, off):
     center = minus(body.center_of_mass, rotate(*axes, *off))
     return dataclasses.replace(found, body=dataclasses.replace(
         body, center_of_mass=center, center_lost=(0.0, 0.0, 0.0)))
+
+
+def _has_inertia(scene):
+    """Return whether a body has the tensor about the point that its constraint holds."""
+    body = scene.body
+    return scene.constraint.inertia(body) in (body.about_center, body.about_origin)
 
 
 def _with_inertia(scene, moments):

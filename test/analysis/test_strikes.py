@@ -13,6 +13,8 @@ from analysis import made
 from rigid_body_sim.analysis.analyze import analyze
 from rigid_body_sim.cli.simulate import main as simulate
 
+pytestmark = pytest.mark.without_numba
+
 SCENE = """
 scene: bar
 about: A bar on a hinge, struck three times

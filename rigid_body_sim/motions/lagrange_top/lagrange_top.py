@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Heavy symmetric top with a fixed point, in closed form over any time.
 
-Notes, "Symmetric Top" to "Fast top". It absorbs a pivot (the body's origin stays where it is),
+Notes, "Symmetric Top" to "Fast top". It absorbs a pivot (a point of the body stays where it is),
 gravity or none, and a body with two equal moments about the pivot and its centre of mass on the
 third axis. A constant force at the centre of mass is more weight or less, and rotors along the
 third axis are more spin. Spherical tops, thin rods (the spherical pendulum), hanging and standing
@@ -54,6 +54,7 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import quotient, quotient_of
 from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back, turn_to
+from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, scaled
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.frame import turned_back
@@ -76,6 +77,7 @@ class Parameters(NamedTuple):
     excess: Pair         # (I1 - I3)/I1
     rotor: Pair          # H/I1, rad/s
     frame: Quaternion    # turns the axes of the top, whose third is e3, to those of the body
+    point: Vector        # from the body's origin to the pivot, body axes, m
 
 
 class Steady(NamedTuple):
@@ -85,6 +87,8 @@ class Steady(NamedTuple):
     spin: float          # omega_3, rad/s
     frame: Quaternion    # see Parameters
     pivot: Vector        # in the world, m
+    point: Vector        # see Parameters
+    is_away: float       # 1.0 where that is not the body's origin, else 0.0
 
 
 class Anchor(NamedTuple):
@@ -114,7 +118,7 @@ ORDERS = (((0.5, 0.5, 0.5, 0.5), (0.5, 0.5, -0.5, -0.5)),
 
 
 def absorbs(scene):
-    """Return whether the scene is a symmetric body under its weight alone, held at its origin.
+    """Return whether the scene is a symmetric body under its weight alone, held at a point.
 
     Symmetric means exactly so (:func:`symmetry_axis`). What counts as weight says
     :func:`mechanics.pulls.weight_of`; rotors may turn along the symmetry axis.
@@ -145,7 +149,7 @@ def rotor_along(scene):
 def symmetry_axis(scene):
     """Return the symmetry axis of a scene's body.
 
-    Two moments about the origin must be the same double, and the centre of mass must lie on the
+    Two moments about the pivot must be the same double, and the centre of mass must lie on the
     third axis: to the last bit where principal axes and body axes coincide up to order and sign,
     else to the rounding of the turn between them.
 
@@ -157,14 +161,14 @@ def symmetry_axis(scene):
         It turns the top's axes into the body's.
     The result is None where the body is not symmetric.
     """
-    about, center = scene.body.about_origin, scene.body.center_of_mass
-    moments, axes = about.moments, about.axes
-    distance = hypot3(*center)
+    inertia, arm = scene.constraint.inertia(scene.body), scene.constraint.arm(scene.body)
+    moments, axes = inertia.moments, inertia.axes
+    distance = hypot3(*arm)
     if moments[0] == moments[1] == moments[2]:
         if distance > 0.0:
-            return 2, turn_to(*(component / distance for component in center))
+            return 2, turn_to(*(component / distance for component in arm))
         return 2, bodies.IDENTITY
-    local = turned_back(axes, center)
+    local = turned_back(axes, arm)
     slack = 0.0 if set(map(abs, axes)) <= {0.0, 0.5, 1.0} else ULPS * distance
     for k, (upright, upside_down) in enumerate(ORDERS):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -180,10 +184,11 @@ def parameters(scene):
 
 def numbers_of(scene, g):
     """Return the :class:`Parameters` of a scene for g (m/s^2)."""
-    body, arm = scene.body, hypot3(*scene.body.center_of_mass)
+    body, arm = scene.body, hypot3(*scene.constraint.arm(scene.body))
     axis, frame = symmetry_axis(scene)
+    moments = scene.constraint.inertia(body).moments
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
-    across, along = body.about_origin.moments[(axis + 1) % 3], body.about_origin.moments[axis]
+    across, along = moments[(axis + 1) % 3], moments[axis]
     (I1, of_I1), (I3, of_I3) = across.as_integer_ratio(), along.as_integer_ratio()
     (M, of_M), (pull, of_pull) = body.mass.as_integer_ratio(), g.as_integer_ratio()
     h, of_h = arm.as_integer_ratio()
@@ -191,7 +196,7 @@ def numbers_of(scene, g):
     return Parameters(
         body.mass, float(g), arm, quotient(weight * of_I1, of_weight * I1),
         quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1),
-        quotient_of(rotor_along(scene), across), frame)
+        quotient_of(rotor_along(scene), across), frame, scene.constraint.point(body))
 
 
 @compiled
@@ -211,7 +216,9 @@ def fill_anchor(p, begin, out):
         (h, low) = p.rotor
         n, own_spin = add(n[0], n[1], h, low), add(own_spin[0], own_spin[1], -h, -low)
     anchor_nutation(Klein((w, z), (y, -x), (omega_2, -omega_1)), n, p.pull, own_spin, out)
-    store_steady(out, Steady(begin.time, omega_3, p.frame, begin.position))
+    is_away = float(dot(p.point, p.point) > 0.0)
+    pivot = plus(begin.position, scaled(is_away, rotate(*begin.orientation, *p.point)))
+    store_steady(out, Steady(begin.time, omega_3, p.frame, pivot, p.point, is_away))
 
 
 @compiled_inline
@@ -225,7 +232,11 @@ def _state_of(steady, time, klein):
     scale = 1.0 - 0.5 * excess
     q = multiply(scale * -b_im, scale * b_re, scale * a_im, scale * a_re, -fx, -fy, -fz, fw)
     omega = rotate(fx, fy, fz, fw, -o_im, o_re, steady.spin)
-    return StateView(time, q, omega, steady.pivot, NOWHERE)
+    position, velocity = steady.pivot, NOWHERE
+    if steady.is_away != 0.0:
+        position = minus(position, rotate(*q, *steady.point))
+        velocity = minus(velocity, rotate(*q, *cross(omega, steady.point)))
+    return StateView(time, q, omega, position, velocity)
 
 
 @compiled

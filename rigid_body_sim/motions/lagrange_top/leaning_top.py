@@ -48,7 +48,7 @@ store_turn, load_state, store_state = ANCHOR.part('turn').store, STATE.load, STA
 
 
 def absorbs(scene):
-    """Return whether the scene is a symmetric body under a constant force, held at its origin."""
+    """Return whether the scene is a symmetric body under a constant force, held at a point."""
     return (scene.constraint.mechanism is Mechanism.POINT and symmetry_axis(scene) is not None
             and upright(scene) is not None and is_symmetric(scene))
 

@@ -65,8 +65,7 @@ class Pivot(Constraint):
 class DisplacedPivot(Constraint):
     """``constraint: {pivot: {at: [x, y, z]}}``: the point `at` (body axes, m) is held.
 
-    `initial.position` is where it is in the world. The motions in closed form hold the body's
-    origin, so such a body is followed step by step: put the origin there to use a closed form.
+    `initial.position` is where it is in the world.
     """
 
     at: Vector = (0.0, 0.0, 0.0)
