@@ -4,6 +4,7 @@
 import fcntl
 import gc
 import hashlib
+import itertools
 import json
 import os
 import pathlib
@@ -129,11 +130,32 @@ def pytest_make_collect_report(collector):
         return (yield)
 
 
+WAITING = 'node'
+"""Folder of the tests that mostly wait: for ticks, messages and processes."""
+
+
 def pytest_collection_modifyitems(items):
-    """Let a test wait for the process without numba, in which its own time limit holds."""
+    """Let a test wait for the process without numba, in which its own time limit holds.
+
+    Files of tests that mostly wait are spread among the others, so that workers do not all come to
+    them at the same time, and leave the processor idle.
+    """
     for item in items:
         if HAVE_NUMBA and item.get_closest_marker('without_numba') is not None:
             item.add_marker(pytest.mark.timeout(LONGEST + 20), append=False)
+    waiting, others = {}, {}
+    for item in items:
+        files = waiting if item.path.parent.name == WAITING else others
+        files.setdefault(item.path, []).append(item)
+    ends = itertools.accumulate(map(len, others.values()))
+    total, made = sum(map(len, others.values())), []
+    queue = [(total * (place + 0.5) / len(waiting), tests)
+             for place, tests in enumerate(waiting.values())]
+    for end, tests in zip(ends, others.values(), strict=True):
+        made += tests
+        while queue and queue[0][0] <= end:
+            made += queue.pop(0)[1]
+    items[:] = [*made, *itertools.chain(*(tests for _, tests in queue))]
 
 
 @pytest.hookimpl(tryfirst=True)

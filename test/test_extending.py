@@ -205,12 +205,13 @@ initial: {euler_zyz: [0.3, 1.2, 0.4], angular_velocity: [3, -2, 20]}
     assert state.velocity == pytest.approx(np.cross(spin, -arm), abs=1e-9)
 
 
-def test_a_ball_joint_at_the_origin_is_a_top_in_closed_form(package):
+def test_a_ball_joint_on_the_axis_makes_a_top_in_closed_form(package):
     """The closed form asks which point is held, not which class holds it."""
-    at = 'constraint={ball_joint: {at: [0, 0, %s]}}'
+    at = 'constraint={ball_joint: {at: [%s, 0, %s]}}'
     assert methods_for(parse_scene(TOP))[0] == 'exact'
-    assert methods_for(parse_scene(TOP, [at % 0]))[0] == 'exact'
-    assert methods_for(parse_scene(TOP, [at % 0.05]))[0] != 'exact'
+    assert methods_for(parse_scene(TOP, [at % (0, 0)]))[0] == 'exact'
+    assert methods_for(parse_scene(TOP, [at % (0, 0.05)]))[0] == 'exact'
+    assert methods_for(parse_scene(TOP, [at % (0.05, 0)]))[0] != 'exact'
     moving = parse_scene(TOP, ['constraint={pivot: {motion: [0, 0, "0.01*t^2"]}}'])
     assert methods_for(moving)[0] != 'exact'
 

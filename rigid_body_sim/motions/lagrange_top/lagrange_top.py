@@ -54,7 +54,7 @@ from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.numerics.pairs import quotient, quotient_of
 from rigid_body_sim.numerics.phase import COUNTABLE, TRIES
 from rigid_body_sim.numerics.rotations import multiply, rotate, rotate_back, turn_to
-from rigid_body_sim.numerics.vectors import cross, dot, minus, plus, scaled
+from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
 from rigid_body_sim.scene import bodies
 from rigid_body_sim.scene.constraints.protocol import Mechanism
 from rigid_body_sim.scene.frame import turned_back
@@ -78,6 +78,7 @@ class Parameters(NamedTuple):
     rotor: Pair          # H/I1, rad/s
     frame: Quaternion    # turns the axes of the top, whose third is e3, to those of the body
     point: Vector        # from the body's origin to the pivot, body axes, m
+    is_away: float       # 1.0 where they are not the same, else 0.0
 
 
 class Steady(NamedTuple):
@@ -88,7 +89,7 @@ class Steady(NamedTuple):
     frame: Quaternion    # see Parameters
     pivot: Vector        # in the world, m
     point: Vector        # see Parameters
-    is_away: float       # 1.0 where that is not the body's origin, else 0.0
+    is_away: float
 
 
 class Anchor(NamedTuple):
@@ -109,7 +110,7 @@ PARAMETER_SIZE, ANCHOR_SIZE = PARAMETERS.size, ANCHOR.size
 load_parameters, load_state, store_state = PARAMETERS.load, STATE.load, STATE.store
 load_steady, store_steady = ANCHOR.part('steady').load, ANCHOR.part('steady').store
 load_start = ANCHOR.part('steady').part('start').load
-store_row, store_reaction = COLUMNS.store, layout(Reaction).store
+load_row, store_row, store_reaction = COLUMNS.load, COLUMNS.store, layout(Reaction).store
 NOWHERE = (0.0, 0.0, 0.0)
 ORDERS = (((0.5, 0.5, 0.5, 0.5), (0.5, 0.5, -0.5, -0.5)),
           ((-0.5, -0.5, -0.5, 0.5), (0.5, -0.5, 0.5, 0.5)),
@@ -186,7 +187,7 @@ def numbers_of(scene, g):
     """Return the :class:`Parameters` of a scene for g (m/s^2)."""
     body, arm = scene.body, hypot3(*scene.constraint.arm(scene.body))
     axis, frame = symmetry_axis(scene)
-    moments = scene.constraint.inertia(body).moments
+    point, moments = scene.constraint.point(body), scene.constraint.inertia(body).moments
     # exact, as quotients of integers: M g h/I1, I3/I1 and (I1 - I3)/I1
     across, along = moments[(axis + 1) % 3], moments[axis]
     (I1, of_I1), (I3, of_I3) = across.as_integer_ratio(), along.as_integer_ratio()
@@ -196,7 +197,7 @@ def numbers_of(scene, g):
     return Parameters(
         body.mass, float(g), arm, quotient(weight * of_I1, of_weight * I1),
         quotient(I3 * of_I1, of_I3 * I1), quotient(I1 * of_I3 - I3 * of_I1, of_I3 * I1),
-        quotient_of(rotor_along(scene), across), frame, scene.constraint.point(body))
+        quotient_of(rotor_along(scene), across), frame, point, float(any(point)))
 
 
 @compiled
@@ -216,14 +217,16 @@ def fill_anchor(p, begin, out):
         (h, low) = p.rotor
         n, own_spin = add(n[0], n[1], h, low), add(own_spin[0], own_spin[1], -h, -low)
     anchor_nutation(Klein((w, z), (y, -x), (omega_2, -omega_1)), n, p.pull, own_spin, out)
-    is_away = float(dot(p.point, p.point) > 0.0)
-    pivot = plus(begin.position, scaled(is_away, rotate(*begin.orientation, *p.point)))
-    store_steady(out, Steady(begin.time, omega_3, p.frame, pivot, p.point, is_away))
+    pivot = plus(begin.position, scaled(p.is_away, rotate(*begin.orientation, *p.point)))
+    store_steady(out, Steady(begin.time, omega_3, p.frame, pivot, p.point, p.is_away))
 
 
 @compiled_inline
 def _state_of(steady, time, klein):
-    """Return the state of a Klein; its norm is 1 up to rounding, which is taken out."""
+    """Return the state of a Klein; its norm is 1 up to rounding, which is taken out.
+
+    Its position and velocity are those of the pivot.
+    """
     (a_re, a_im), (b_re, b_im), (o_re, o_im) = klein
     fx, fy, fz, fw = steady.frame
     # summed near 0, where rounding has no side
@@ -232,11 +235,15 @@ def _state_of(steady, time, klein):
     scale = 1.0 - 0.5 * excess
     q = multiply(scale * -b_im, scale * b_re, scale * a_im, scale * a_re, -fx, -fy, -fz, fw)
     omega = rotate(fx, fy, fz, fw, -o_im, o_re, steady.spin)
-    position, velocity = steady.pivot, NOWHERE
-    if steady.is_away != 0.0:
-        position = minus(position, rotate(*q, *steady.point))
-        velocity = minus(velocity, rotate(*q, *cross(omega, steady.point)))
-    return StateView(time, q, omega, position, velocity)
+    return StateView(time, q, omega, steady.pivot, NOWHERE)
+
+
+@compiled_inline
+def _of_origin(steady, now):
+    """Return a state with the position and velocity of the body's origin, not of the pivot."""
+    q, omega = now.orientation, now.angular_velocity
+    return StateView(now.time, q, omega, minus(now.position, rotate(*q, *steady.point)),
+                     minus(now.velocity, rotate(*q, *cross(omega, steady.point))))
 
 
 @compiled
@@ -249,7 +256,10 @@ def state(anchor, time, out):
 def state_at(anchor, time):
     """Return the state at a time, a StateView."""
     steady = load_steady(anchor)
-    return _state_of(steady, time, functions(anchor, two_sum(time, -steady.start)))
+    now = _state_of(steady, time, functions(anchor, two_sum(time, -steady.start)))
+    if steady.is_away != 0.0:
+        now = _of_origin(steady, now)
+    return now
 
 
 @compiled
@@ -266,6 +276,9 @@ def fill_columns(anchor, times, columns):
         for k in range(len(times)):
             klein = hyperbolic_functions(course, series, two_sum(times[k], -steady.start))
             store_row(columns, _state_of(steady, times[k], klein), k)
+    if steady.is_away != 0.0:
+        for k in range(len(times)):
+            store_row(columns, _of_origin(steady, load_row(columns, k)), k)
 
 
 @compiled

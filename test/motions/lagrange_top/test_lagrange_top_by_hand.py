@@ -206,8 +206,9 @@ def test_the_axis_of_a_top_is_the_one_that_its_centre_of_mass_lies_on(k, way, ax
     def axis_of(moments, center):
         about = types.SimpleNamespace(moments=moments, axes=tuple(
             (np.array(axes) / np.linalg.norm(axes)).tolist()))
-        return motion.symmetry_axis(types.SimpleNamespace(body=types.SimpleNamespace(
-            about_origin=about, center_of_mass=center)))
+        return motion.symmetry_axis(types.SimpleNamespace(
+            body='a top', constraint=types.SimpleNamespace(
+                inertia=lambda body: about, arm=lambda body: center)))
     told = axis_of(moments, center)
     assert (told is not None) is found
     if found:
