@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rigid_body_sim.compilation.layout import Matrix, Vector
 from rigid_body_sim.numerics.vectors import plus, scaled
-from rigid_body_sim.scene.effects.protocol import Pull
+from rigid_body_sim.scene.effects.protocol import Pull, Twist
 from rigid_body_sim.scene.principal_axes import ULPS
 from rigid_body_sim.scene.scene import kept
 
@@ -65,10 +65,36 @@ def total_pull(scene):
         None where something acts that is not of this kind, or changes in time, and where the
         point that is held moves.
     """
+    return _total_of(scene, scene.acting)
+
+
+@kept
+def twisted(scene):
+    """Return the Twist of all torsion springs of a scene, and the Total of what acts besides.
+
+    Returns
+    -------
+    (Twist, Total) or None
+        The Twist has Fractions, exactly what the doubles of the scene say. None where no spring
+        twists the body, and where there is no such Total.
+    """
+    rest = _total_of(scene, [effect for effect in scene.acting if effect.twist is None])
+    stiffness = torque = damping = Fraction(0)
+    for effect in scene.acting:
+        if effect.twist is not None:
+            k, angle, c = map(Fraction, effect.twist)
+            stiffness, torque, damping = stiffness + k, torque + k * angle, damping + c
+    if rest is None or not stiffness:
+        return None
+    return Twist(stiffness, torque / stiffness, damping), rest
+
+
+def _total_of(scene, effects):
+    """Return the Total of some effects of a scene, or None as `total_pull` does."""
     frame, pulls = scene.frame, []
     if frame.path is not None:
         return None
-    for effect in scene.acting:
+    for effect in effects:
         field = effect.uniform_field
         if field is not None:
             pulls.append(Pull(force=scaled(frame.mass, field)))

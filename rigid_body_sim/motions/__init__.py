@@ -21,6 +21,7 @@ MOTIONS = ('rigid_body_sim.motions.free_body.free_body',
            'rigid_body_sim.motions.damped_body',
            'rigid_body_sim.motions.driven_body',
            'rigid_body_sim.motions.fixed_axis',
+           'rigid_body_sim.motions.torsion_pendulum',
            'rigid_body_sim.motions.lagrange_top.leaning_top',
            'rigid_body_sim.motions.pendulum.leaning_pendulum')
 """Modules in the order in which they are offered a scene; each is imported when its turn comes."""

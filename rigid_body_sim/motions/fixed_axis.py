@@ -85,7 +85,7 @@ def takes(scene, start):
     total = total_pull(scene)
     axis = _axis_of(scene, total)
     if scene.constraint.mechanism is Mechanism.AXIS:
-        return _weight_is_idle(scene, total, start)
+        return weight_is_idle(scene, total, start)
     return _stays(scene, total, axis, start)
 
 
@@ -93,14 +93,14 @@ def _axis_of(scene, total):
     """Return the axis of a scene (unit vector, or the number of a principal axis), or None."""
     start = scene.initial.vector
     if scene.constraint.mechanism is Mechanism.AXIS:
-        return scene.constraint.axis if _weight_is_idle(scene, total, start) else None
+        return scene.constraint.axis if weight_is_idle(scene, total, start) else None
     return next((k for k in range(3) if _stays(scene, total, k, start)), None)
 
 
-def _weight_is_idle(scene, total, start):
+def weight_is_idle(scene, total, start):
     """Return whether the force on a hinged body has no torque along the axis, now and later."""
     size = hypot3(*total.force)
-    if size == 0.0 or axle(scene).distance == 0:
+    if size == 0.0 or axle(scene).distance[0] == 0:
         return True
     n = rotate(*start[ORIENTATION].tolist(), *scene.constraint.axis)
     return hypot3(*cross(n, total.force)) <= ULPS * size

@@ -153,3 +153,13 @@ def test_what_stays_about_its_axis_is_absorbed(constraint, effects, spin, absorb
         tilted[1:5] = 0.0, math.sin(0.1), 0.0, math.cos(0.1)
         tilted[5:8] += (1e-3, 1e-3, 1e-3)
         assert motion.takes(scene, tilted) == (constraint != 'free' and 'gravity' not in effects)
+
+
+@pytest.mark.parametrize(('along', 'beside', 'absorbed'), [
+    (0.0, 0.0, True), (0.3, 0.0, True), (-2.0, 0.0, True), (0.3, 1e-9, False)])
+def test_a_weight_at_any_point_of_the_axis_is_idle(along, beside, absorbed):
+    """The hinge is level, and may be held anywhere on the line through the centre of mass."""
+    x, y, z = CENTER
+    hinge = f'{{hinge: {{axis: [0, 1, 0], through: [{x + beside}, {y + along}, {z}]}}}}'
+    scene = scene_of(hinge, 'gravity: {g: 9.8}, drag: {angular: 0.5}', 'rate: 1', orientation=UP)
+    assert motion.absorbs(scene) is absorbed

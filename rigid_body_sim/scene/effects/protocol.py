@@ -147,6 +147,24 @@ class Pull(NamedTuple):
     formulas: tuple[Formulas, ...] = ()
 
 
+class Twist(NamedTuple):
+    """A torque -stiffness (phi - angle) - damping phi' about the axis of a hinge at phi (rad).
+
+    Attributes
+    ----------
+    stiffness : float
+        N m/rad.
+    angle : float
+        rad.
+    damping : float
+        N m s.
+    """
+
+    stiffness: float
+    angle: float
+    damping: float
+
+
 class Potential(NamedTuple):
     """A potential energy as a function of the attitude and the place of the body.
 
@@ -347,6 +365,11 @@ class Effect(Protocol):
     @property
     def momentum(self) -> Callable[[Frame], Momentum | None] | None:
         """``momentum(frame)``: what it carries inside the body, or None in this frame."""
+        return None
+
+    @property
+    def twist(self) -> Twist | None:
+        """What it does about the axis of a hinge, if it does nothing else; a closed form asks."""
         return None
 
     @property

@@ -11,7 +11,14 @@ from rigid_body_sim.numerics.vectors import minus
 from rigid_body_sim.scene.bodies import Body
 from rigid_body_sim.scene.constraints.protocol import Constraint, Mechanism
 from rigid_body_sim.scene.effects.expressed import of_pulls
-from rigid_body_sim.scene.effects.protocol import Acting, Cancelling, Effect, Potential, Pull
+from rigid_body_sim.scene.effects.protocol import (
+    Acting,
+    Cancelling,
+    Effect,
+    Potential,
+    Pull,
+    Twist,
+)
 from rigid_body_sim.scene.expressions import actions, formulas, tree, vectors
 from rigid_body_sim.scene.expressions.cancelling import balancing
 from rigid_body_sim.scene.expressions.source import PLACE, RATES, VELOCITY
@@ -43,6 +50,7 @@ class Spring(Effect):
     damper: tuple[tree.Term, ...]
     at: tuple[float, float, float] | None    # None of a torsion spring
     held: tuple[tree.Term, ...] = ()         # pull and damper in body axes
+    torsion: Twist | None = None             # of a torsion spring
     name: ClassVar[str] = 'spring'
     SCHEMA: ClassVar[dict] = described(mapping_of(
         ['stiffness'],
@@ -64,8 +72,9 @@ class Spring(Effect):
         """Return the effect of its settings in a scene file."""
         k, c, l = (float(settings.get(key, 0.0)) for key in ('stiffness', 'damping', 'length'))
         if constraint.axis is not None and not {'at', 'anchor', 'length'} & set(settings):
-            energy, damper = _torsion(k, c, float(settings.get('angle', 0.0)), constraint.axis)
-            return cls(energy, (), damper, None)
+            angle = float(settings.get('angle', 0.0))
+            energy, damper = _torsion(k, c, angle, constraint.axis)
+            return cls(energy, (), damper, None, torsion=Twist(k, angle, c))
         if 'angle' in settings:
             raise BadInput(f'{where}.angle', 'is given together with at, anchor or length'
                            if constraint.axis is not None
@@ -112,6 +121,11 @@ class Spring(Effect):
             return formulas.force(self.held, 'body', (), self.at, frame)
         both = vectors.total(self.pull, self.damper or formulas.NONE)
         return formulas.force(both, 'world', (), self.at, frame)
+
+    @property
+    def twist(self) -> Twist | None:
+        """The Twist of a torsion spring."""
+        return self.torsion
 
     def potential(self, frame: Frame) -> Potential:
         """Return the energy."""
