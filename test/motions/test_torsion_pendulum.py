@@ -14,9 +14,9 @@ from rigid_body_sim.scene.scene import parse_scene
 from rigid_body_sim.simulation.simulation import Simulation
 
 pytestmark = pytest.mark.without_numba
-MOMENT = 0.5
+MOMENT = 0.375
 TURNED = (0.1, -0.5, 0.7, 0.5)
-SPRING = 'spring: {stiffness: 8, angle: 0.25, damping: 0}'
+SPRING = 'spring: {stiffness: 6, angle: 0.25, damping: 0}'
 
 
 def scene_of(effects, angle=0.75, rate=2.0, axis='[0, 0, 1]', through='[0.1, 0.2, 0]'):
@@ -53,10 +53,10 @@ def at(scene, times, start=0.0):
 
 
 @pytest.mark.parametrize(('damping', 'times'), [
-    # 4 is critical: the root of 16 - (c/I)^2/4 is 0 there
+    # 3 is critical: the root of 16 - (c/I)^2/4 is 0 there
     (0.0, (0.0, 1e-3, 0.3, 7.0, 1e6, 1e10)), (0.1, (1e-3, 0.3, 7.0, 100.0)),
-    (3.999999, (1e-3, 0.3, 2.0, 7.0)), (4.0, (1e-3, 0.3, 2.0, 7.0)),
-    (4.000001, (1e-3, 0.3, 2.0, 7.0)), (40.0, (1e-6, 1e-3, 0.3, 7.0, 40.0)),
+    (2.999999, (1e-3, 0.3, 2.0, 7.0)), (3.0, (1e-3, 0.3, 2.0, 7.0)),
+    (3.000001, (1e-3, 0.3, 2.0, 7.0)), (30.0, (1e-6, 1e-3, 0.3, 7.0, 40.0)),
     (1e6, (1e-7, 1e-3, 0.3, 1e4, 1e6))])
 def test_it_swings_and_creeps_as_its_equation_says(damping, times):
     scene = scene_of(SPRING.replace('damping: 0', f'damping: {damping!r}'))
@@ -65,7 +65,7 @@ def test_it_swings_and_creeps_as_its_equation_says(damping, times):
     for time, state in zip(times, at(scene, 0.25 + np.array(times), 0.25), strict=True):
         # what the sum of 0.25 s and the time loses does not count
         after = (0.25 + time) - 0.25
-        x, rate = swung(0.75 - 0.25, 2.0, 8.0 / MOMENT, damping / MOMENT, after)
+        x, rate = swung(0.75 - 0.25, 2.0, 16.0, damping / MOMENT, after)
         moved = Rotation.from_rotvec([0.0, 0.0, float(x - mpf('0.5'))])
         assert (Rotation.from_quat(state[1:5]) * (turned * moved).inv()).magnitude() < 1e-15
         assert abs(state[7] - float(rate)) < 4e-15
@@ -108,6 +108,15 @@ def test_what_is_absorbed(effects, options, absorbed):
     assert motion.absorbs(scene_of(effects, **options)) is absorbed
 
 
+@pytest.mark.parametrize(('below', 'taken'), [(2.0 ** -19, True), (2.0 ** -21, False)])
+def test_a_state_is_taken_that_swings_to_a_millionth_of_the_end_of_its_angle(below, taken):
+    """It has x = 0.5 rad about 0.25, and a rate that would take it farther without damping."""
+    scene = scene_of(SPRING)
+    start, swing = scene.initial.vector.copy(), 2.0 * math.pi * (1.0 - below) - 0.25
+    start[7] = -4.0 * math.sqrt(swing * swing - 0.25)
+    assert motion.takes(scene, start) is taken
+
+
 def test_a_scene_is_run_by_it_and_a_strike_that_winds_it_up_is_followed_on():
     """The ledger books its springs, and turning points are where its rate changes its sign."""
     one = Simulation(scene_of(SPRING.replace('damping: 0', 'damping: 0.0625')), horizon=10.0)
@@ -116,7 +125,7 @@ def test_a_scene_is_run_by_it_and_a_strike_that_winds_it_up_is_followed_on():
     ledger = one.ledger()
     assert abs(ledger['energy_residual']) < 2e-15                                  # 2e-16
     assert ledger['momentum_residual'] < 1e-13                                     # 3e-15
-    gamma = 0.0625
+    gamma = 0.0625 / (2.0 * MOMENT)
     omega = math.sqrt(16.0 - gamma * gamma)
     first = math.atan2(2.0 * omega, 16.0 * 0.5 + gamma * 2.0) / omega
     assert [event.time for event in one.events] == pytest.approx(
