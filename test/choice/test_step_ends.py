@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from choice.known_bodies import Coasting, coasting_scene
 
-from rigid_body_sim.choice import forecast, runs
+from rigid_body_sim.choice import forecast, runs, trial_runs
 from rigid_body_sim.choice.trial import Trial
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.marching.work import TooMuchWork
@@ -97,7 +97,7 @@ def test_what_ends_of_steps_add_counts_from_the_next_look_on(monkeypatch):
         _scene=scene, _times=np.array([1.0, 2.0, 3.0, 4.0]), _most=9, _at_ends={},
         _states=lambda tolerance: None, prototype=types.SimpleNamespace(at=lambda one, most: one))
     trial._apart_at_ends = types.MethodType(Trial._apart_at_ends, trial)
-    slowed, ends, made = [True], [[0.5, 1.5, 1.6, 3.5]], []
+    slowed, ends, made, asked = [True], [[0.5, 1.5, 1.6, 3.5]], [], []
 
     def turned(scene, tolerance, start, times):
         """Return states that are turned about z, the finer ones by nothing."""
@@ -107,13 +107,14 @@ def test_what_ends_of_steps_add_counts_from_the_next_look_on(monkeypatch):
         out[:, 3], out[:, 4] = np.sin(0.5 * angle), np.cos(0.5 * angle)
         return out
     monkeypatch.setattr(forecast, 'has_slowed', lambda scene, states: slowed[0])
-    monkeypatch.setattr(runs, 'step_ends', lambda *given: ends[0])
+    monkeypatch.setattr(runs, 'step_ends', lambda *given: asked.append(given[1:]) or ends[0])
     monkeypatch.setattr(runs, 'run', turned)
     errors = np.array([2e-9, 1e-9, 3e-9, 1e-9])
     added = Trial._between_looks(trial, 1e-6, 1e-9, errors)
     # the largest so far is 1, 4, 4, 4 at ends, and 2, 2, 3, 3 at looks
     assert added == pytest.approx([0.0, 2e-9, 1e-9, 1e-9], rel=1e-6, abs=1e-15)
     assert made == [1e-6, 1e-9]
+    assert [(one, *rest) for one, _, *rest in asked] == [(1e-6, 4.0, trial_runs.ENDS)]
     Trial._between_looks(trial, 1e-6, 1e-9, errors)
     assert made == [1e-6, 1e-9]    # each pair is compared once
     for none in ([], None):
