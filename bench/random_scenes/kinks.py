@@ -12,7 +12,7 @@ from random_scenes.wide import WIDE
 SHARE = 0.3              # rad, of a step
 DELTA = WIDE(1e-6)       # share of a step after which the slope of a switch is seen
 DIPS = 4                 # looks for the lowest point of a switch within a step
-SECANTS = 80
+SECANTS, HALVINGS = 80, 80
 WORDS = 'abs(', 'sign(', 'min(', 'max(', 'where(', '<', 'dry_friction'
 """What a scene's text has where it has kinks."""
 
@@ -68,8 +68,11 @@ class _Copy(Truth):
             self._break_loose()
         while self.t < end:
             if self.laws.friction is not None and sides.modes[self.laws.friction] == 0:
-                self.t = WIDE(end)    # it rests until something jumps
-                return
+                self.t = self._torn_loose(WIDE(end))
+                if self.t < end:
+                    sides.modes[self.laws.friction] = 1 if self._pull(self.t) > 0 else -1
+                    h = WIDE(SHARE / self._fastest) / 4
+                continue
             y, k = self.y, self.rates(self.y, self.t)
             rate, growth = (math.sqrt(float((one[0, 4:7] ** 2).sum())) for one in (y, k))
             pace = max(rate + math.sqrt(growth), self._fastest)
@@ -168,9 +171,30 @@ class _Copy(Truth):
         """Say on which side of dry friction a body at rest goes on: 0 where it is held."""
         sides, place = self.laws.sides, self.laws.friction
         sides.modes[place] = 0
-        pull = (self.rates(self.y, self.t)[0, 4:7] @ self.axis) * self.about[0]
+        pull = self._pull(self.t)
         if abs(pull) > self.laws.grip:
             sides.modes[place] = 1 if pull > 0 else -1
+
+    def _pull(self, t):
+        """Return the torque along the axis at a time, without friction, of a body at rest, N m."""
+        return (self.rates(self.y, t)[0, 4:7] @ self.axis) * self.about[0]
+
+    def _torn_loose(self, end):
+        """Return when what acts outgrows the grip of friction on a body at rest, at most an end.
+
+        What lasts for less than a look is passed over.
+        """
+        low, grip = self.t, self.laws.grip
+        while low < end:
+            high = min(low + WIDE(SHARE / self._fastest), end)
+            if abs(self._pull(high)) > grip:
+                for _ in range(HALVINGS):
+                    middle = (low + high) / 2
+                    low, high = ((low, middle) if abs(self._pull(middle)) > grip
+                                 else (middle, high))
+                return high
+            low = high
+        return end
 
 
 def _lowest(low, high):

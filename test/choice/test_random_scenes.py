@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A few of the scenes of bench/choice_random.py: what `auto` promises, beside a truth."""
 
+import math
 import pathlib
 import sys
 from fractions import Fraction
@@ -194,6 +195,34 @@ def test_the_ledger_shows_the_energy_that_a_torsion_spring_gets_beyond_its_end(j
     simulation = judge.Simulation(scene, accuracy=1e-14, rate=10.0, horizon=0.1)
     assert judge._unbalanced(simulation, jumped) < 2e-15    # measured: 4e-16
     assert simulation.ledger()['energy_residual'] > 0.01
+
+
+SLIPS = """
+scene: slips
+parameters: {k: 1.0, w0: 2.0}
+body: {mass: 1.0, inertia: [1.4, 1.4, 1.4]}
+constraint: {hinge: {axis: [0, 0, 1]}}
+effects: [torque: {value: [0, 0, '0.5*sin(w0*t)']}, dry_friction: {torque: 0.3}]
+initial: {}
+"""
+
+
+@pytest.mark.without_numba
+def test_the_truth_slips_from_rest_when_what_acts_outgrows_friction(judge):
+    """From asin(0.6)/2 s on its rate has a formula; later slips are beside a method."""
+    scene = judge.parse_scene(SLIPS)
+    truth = judge.truth_of(scene)
+    begins = math.asin(0.6) / 2.0
+    truth.to(begins - 1e-6)
+    assert not truth.y[0, 4:7].any()
+    for time in (0.6, 1.2):
+        truth.to(time)
+        rate = (0.25 * (math.cos(2.0 * begins) - math.cos(2.0 * time))
+                - 0.3 * (time - begins)) / 1.4
+        assert float(truth.y[0, 6]) == near(rate, rel=1e-14)
+    truth.to(6.0)
+    one = judge.Simulation(scene, 'dop8', 1e-13).states([6.0]).orientation[0]
+    assert np.abs(truth.y[0, :4].astype(float) - one).max() < 1e-13
 
 
 @pytest.mark.without_numba
