@@ -259,8 +259,8 @@ class Laws:
             value = self._vector(one['value'], known)
             return 0, back(q, value) if one.get('frame') == 'world' else value
         if name == 'magnetic':
-            return 0, cross(array(one['moment'])[None],
-                               back(q, self._vector(one['field'], known)))
+            field = self._vector(one['field'], known)
+            return 0 * known['o'], cross(array(one['moment'])[None], back(q, field))
         if name == 'force':
             at = array(one['at']) if 'at' in one else self.held.center
             F = self._vector(one['value'], known)

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from near import near
+from scipy.special import ellipj, ellipk
 from soak import IN_SOAK, SOAK
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / 'bench'
@@ -195,6 +196,20 @@ def test_the_ledger_shows_the_energy_that_a_torsion_spring_gets_beyond_its_end(j
     simulation = judge.Simulation(scene, accuracy=1e-14, rate=10.0, horizon=0.1)
     assert judge._unbalanced(simulation, jumped) < 2e-15    # measured: 4e-16
     assert simulation.ledger()['energy_residual'] > 0.01
+
+
+@pytest.mark.without_numba
+def test_the_truth_knows_a_magnet_in_a_uniform_field(judge):
+    """It librates about a field along z as a pendulum: sin(tilt/2) = k sn(w t + K), k at rest."""
+    scene = judge.parse_scene("""
+        {scene: magnet, parameters: {w0: 1}, body: {mass: 1, inertia: [0.5, 0.5, 0.5]},
+         constraint: pivot, effects: [magnetic: {moment: [0, 0, 1], field: [0, 0, 8]}],
+         initial: {tilt: 1.0}}""")
+    truth, k = judge.truth_of(scene), math.sin(0.5)
+    truth.to(0.5)
+    sn = ellipj(4.0 * 0.5 + ellipk(k * k), k * k)[0]    # w = sqrt(8/0.5)
+    x, y = truth.y[0, :2].astype(float)
+    assert x * x + y * y == near(k * k * sn * sn, rel=1e-14)
 
 
 SLIPS = """
