@@ -93,20 +93,21 @@ def tried(number, seed, draw=drawn):
     text, duration = draw(number, seed)
     scene = parse_scene(text)
     _within(LONGEST_TRUTH, 'the truth')
-    times, attitudes, floor, jumped = known(scene, duration)
-    duration = float(times[-1])
-    _within(LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON, 'the scene')
+    times, attitudes, largest, jumped = known(scene, duration)
+    duration, longest = float(times[-1]), LONGEST if HAVE_NUMBA else LONGEST_IN_PYTHON
+    _within(longest, 'the scene')
     what = ' '.join([scene.constraint.kind, *(effect.name for effect in scene.effects)])
     for accuracy in ACCURACIES:
         simulation = Simulation(scene, accuracy=accuracy, horizon=duration, rate=1.0 / duration)
         choice, states = simulation.choice, simulation.states(times)
-        error = _error(attitudes, states)
+        error, floor = _error(attitudes, states), largest
         between = _worst_between(simulation, times)
         if between is not None:
             _within(LONGEST_TRUTH, 'the truth')
             _, there, floors, _ = _followed(scene, between, math.inf)
-            error, floor = max(error, _error(there, simulation.states(between))), max(
-                floor, *floors)
+            _within(longest, 'the scene')
+            error = max(error, _error(there, simulation.states(between)))
+            floor = max(floor, *floors)
         residual = _unbalanced(simulation, jumped)
         expected, size = choice.expected_error, max(error, floor)
         expected = np.inf if expected is None else expected    # nothing is known
