@@ -23,6 +23,7 @@ import math
 import numpy as np
 
 from rigid_body_sim.integrators.marching.course import NO_STEP
+from rigid_body_sim.mechanics.bounds import relaxation
 from rigid_body_sim.numerics.functions import cos, exp, hypot, hypot3, log, sin
 from rigid_body_sim.numerics.rotations import multiply, normalised, rotate, rotate_back
 from rigid_body_sim.numerics.vectors import cross, minus, plus, scaled
@@ -59,13 +60,10 @@ def relaxing(scene, vector):
 
     It is approximate, and infinite where there is no such axis.
     """
-    moments = scene.constraint.inertia(scene.body).moments
     frame = scene.frame
     omega = rotate_back(*frame.axes, *STATE.load(vector.tolist()).angular_velocity)
     L = hypot3(*(I * w for I, w in zip(frame.moments, omega, strict=True)))
-    low, high = min(moments), max(moments)
-    rate = (scene.inner_dissipation * (L * L / high) * ((high - low) / low) if low > 0.0
-            else 0.0)
+    rate = relaxation(scene, L)
     return FOLDS / rate if rate > 0.0 else math.inf
 
 

@@ -100,6 +100,35 @@ def _largest_moment(scene):
     return max(constraint.inertia(body).moments)
 
 
+def relaxation(scene, L):
+    """Return the rate (1/s) at which internal dissipation takes a body to its last axis, at most.
+
+    Near a principal axis the other components of omega grow or fall at rates of this size, by the
+    equations of integrators/departure.py.
+
+    Parameters
+    ----------
+    L : float
+        Angular momentum, kg m^2/s.
+    """
+    moments = scene.constraint.inertia(scene.body).moments
+    low, high = min(moments), max(moments)
+    return (scene.inner_dissipation * (L * L / high) * ((high - low) / low) if low > 0.0
+            else 0.0)
+
+
+def falling(scene):
+    """Return the rate (1/s) at which internal dissipation takes a body down its potentials.
+
+    The axes turn with c times the torque of potentials, which is half their range at most, about;
+    infinite where the range of one is not known.
+    """
+    if scene.inner_dissipation == 0.0:
+        return 0.0
+    torque = reduce(add, (bounds.energy for bounds in _bounds(scene)), 0.0)
+    return math.inf if _swings_unbounded(scene) else scene.inner_dissipation * torque
+
+
 def drive(scene, wrench):
     """Return a bound of the angular acceleration (rad/s^2) by drives and a held wrench.
 

@@ -11,6 +11,10 @@ The values at the beginning of a panel and just before its end must also fit the
 through the nodes, as well as its last terms let expect: a part that ends before the first node,
 and a kink beside the last one, would not be seen otherwise. The end itself may lie behind a kink.
 A panel with too large an error is halved. Source of the rule: NIST DLMF 3.5(v).
+
+Where heat relaxes a body within a share of a panel, the power may rise from nothing and be over
+between two nodes, and no value shows it. The energy of the states at the edges does: a panel that
+would not explain what the body gained in it is halved, too.
 """
 
 import numpy as np
@@ -29,6 +33,7 @@ FIRST_TAIL = 12
 TAIL = COUNT - FIRST_TAIL
 # numba compiles a function once more where a constant is handed to it, but not for int(constant)
 WORK = ENTRIES.part('work').first
+DISSIPATED = ENTRIES.part('dissipated').first
 IMPULSE = ENTRIES.part('angular_impulse').first    # entries before it are energies
 # places in the array `sums`, after the entries: what they lost, and the sizes of what they sum
 LOST = ENTRIES_SIZE
@@ -40,6 +45,7 @@ SEEN = 2.0 ** -40        # share of an integrand: c_14 and c_15 that are smaller
 SMOOTH = 2.0 ** -42      # the same in a panel twice as long
 FITS = 2.0 ** -20        # share of an integrand: how well its values at both ends fit at least
 BEYOND = 8.0             # times c_14 and c_15: values at the ends of an analytic function fit so
+EXPLAINED = 2.0 ** -40   # share of the energy that a panel may leave unexplained
 SHOWS = 2.0 ** -36       # share of an integrand: a misfit that may still be rounding
 TURNED = 12.0            # rad: the largest turn of the body in a panel
 # advice on a panel's length
@@ -126,6 +132,15 @@ def _advice(rates, at, first, last, length, size, slack, noise):
 
 
 @compiled
+def _unexplained(rates, at, length, gained):
+    """Return the energy (J) that a body gained in a panel and the panel would not book."""
+    for i in range(COUNT):
+        row = at + 1 + i
+        gained -= length * WEIGHTS[i] * (rates[row, int(WORK)] - rates[row, int(DISSIPATED)])
+    return abs(gained)
+
+
+@compiled
 def _add(rates, at, length, sums):
     """Add the integrals over a panel to `sums`, and their sizes to those of the integrals."""
     for k in range(ENTRIES_SIZE):
@@ -141,7 +156,7 @@ def _add(rates, at, length, sums):
 
 
 @compiled
-def add_panels(rates, edges, longest, shortest, slack, noise, sums):
+def add_panels(rates, edges, gained, relaxation, falling, longest, shortest, slack, noise, sums):
     """Add panels of one length, until one should be shorter or the next one longer.
 
     Parameters
@@ -150,6 +165,12 @@ def add_panels(rates, edges, longest, shortest, slack, noise, sums):
         At the PLACES of each panel.
     edges : array (panels + 1,)
         s.
+    gained : array (panels,)
+        Energy that the body gained in each, J; read where heat relaxes it.
+    relaxation : float
+        Rate at which heat relaxes a body, over the square of its |omega|, s.
+    falling : float
+        Rate at which heat takes it down its potentials, 1/s.
     longest, shortest : float
         Bounds of the length, s: a panel that is shorter is taken as it is.
     slack : float
@@ -173,6 +194,10 @@ def add_panels(rates, edges, longest, shortest, slack, noise, sums):
         momentum = _advice(rates, at, int(IMPULSE), int(LOST), length, sums[MOMENTUM], slack,
                            noise)
         advice = min(energy, momentum)
+        if length * (relaxation * fastest * fastest + falling) > 1.0:
+            explained = max(EXPLAINED, slack) * sums[ENERGY] + length * rough
+            if _unexplained(rates, at, length, gained[panel]) > explained:
+                advice = SHORTER
         if length > shortest and (advice == SHORTER or length * fastest > TURNED):
             return panel, SHORTER
         _add(rates, at, length, sums)

@@ -16,8 +16,15 @@ import numpy as np
 from rigid_body_sim.compilation.memory import memory, table
 from rigid_body_sim.compilation.templates import imported, specialise
 from rigid_body_sim.mechanics import booking, parameters
-from rigid_body_sim.mechanics.bounds import cancelling_terms, drive, resting, swing_rate
-from rigid_body_sim.mechanics.energy import DIAGNOSIS, carried_energy
+from rigid_body_sim.mechanics.bounds import (
+    cancelling_terms,
+    drive,
+    falling,
+    relaxation,
+    resting,
+    swing_rate,
+)
+from rigid_body_sim.mechanics.energy import DIAGNOSIS, KINETIC, POTENTIAL, carried_energy
 from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, WORK
 from rigid_body_sim.mechanics.panels import (
     COLUMNS,
@@ -48,6 +55,7 @@ EVENLY = 2 ** 12
 
 They are spread evenly, and give the mean of what acts.
 """
+NOTHING = memory(np.zeros(0))
 
 
 class Actors:
@@ -73,6 +81,9 @@ class Actors:
         Bounds of the rates (bounds.py), rad/s and rad/s^2.
     noise : float
         What rounding leaves of terms of the torque that cancel, N m.
+    relaxation, falling : float
+        Rates at which heat relaxes the body (bounds.py): over the square of its |omega|, s, and
+        down its potentials, 1/s.
     """
 
     def __init__(self, scene, wrench=None, horizon=0.0):
@@ -89,6 +100,8 @@ class Actors:
         self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
         self.swing, self.drive = swing_rate(scene), drive(scene, wrench)
         self._resting = resting(scene)
+        self.relaxation = relaxation(scene, max(scene.constraint.inertia(scene.body).moments))
+        self.falling = falling(scene)
         terms = cancelling_terms(scene, horizon)
         self._noise_of_force, self.noise = CANCELLED * terms.force, CANCELLED * terms.torque
 
@@ -122,6 +135,18 @@ class Actors:
         less M u' . (V - u), and that is done by the torque of scene/effects/carrying.py.
         """
         return carried_energy(self._numbers, STATE.load(vector.tolist()))
+
+    def gained(self, states):
+        """Return the energy (J) that work gives and heat takes between states (n, 14), (n - 1,).
+
+        Where the pivot moves, that is without what its bearing gives (`carried`).
+        """
+        rows = np.empty((len(states), DIAGNOSIS.size))
+        self._energies.diagnose_many(memory(self._scene), memory(states), memory(rows))
+        energy = rows[:, KINETIC] + rows[:, POTENTIAL]
+        if self.is_carried:
+            energy -= [self.carried(vector) for vector in states]
+        return np.diff(energy)
 
     def sizes(self, vector):
         """Return the sizes of energy (J) and momentum (kg m^2/s) of a state.
@@ -229,8 +254,10 @@ class Quadrature:
             # the edges are rounded, so a panel may be an ulp of the time longer than asked
             shortest = max(1.001 * least, CLOCK * abs(t) + TINY * self._first)
             rates = table(self._actors.rates(p, states))
-            added, advice = add_panels(rates, memory(edges), self._longest, shortest, self._slack,
-                                       self._actors.noise, memory(sums))
+            added, advice = add_panels(rates, memory(edges), self._gained(edges),
+                                       self._actors.relaxation, self._actors.falling,
+                                       self._longest, shortest, self._slack, self._actors.noise,
+                                       memory(sums))
             self._count, most = self._count + len(edges) - 1, min(AT_ONCE, 2 * most)
             if advice == SHORTER:
                 length, most = 0.5 * (edges[added + 1] - edges[added]), 1
@@ -238,6 +265,14 @@ class Quadrature:
                 length, most = 2.0 * length, 1
             t = float(edges[added])
         return t, length
+
+    def _gained(self, edges):
+        """Return the energy (J) that the body gained in each panel, where heat relaxes it."""
+        if not (self._actors.relaxation > 0.0 or self._actors.falling > 0.0):
+            return NOTHING
+        states = np.empty((len(edges), STATE_SIZE))
+        self._states(edges, states)
+        return memory(self._actors.gained(states))
 
 
 def _edges(t, until, end, length, most):

@@ -13,8 +13,10 @@ from rigid_body_sim.mechanics.bounds import (
     cancelling,
     drive,
     drives,
+    falling,
     passed,
     pushed_unbounded,
+    relaxation,
     resting,
     swing_momentum,
     swing_rate,
@@ -191,6 +193,18 @@ def test_a_magnet_in_a_field_that_changes_counts_and_another_has_bounds():
     assert moving == 0.0
     steady = scene('pivot', moment('3'))
     assert cancelling(steady, 100.0) == (swing_rate(steady)**2, 0.0)
+
+
+def test_heat_relaxes_a_body_at_the_rate_of_its_wobble_and_down_its_potentials():
+    """c L^2 (1/I_i - 1/I_max), and c times M g r = 2 10 0.5."""
+    heat = 'internal_dissipation: {coefficient: 0.7}'
+    free = scene('free', heat)
+    assert relaxation(free, 3.0) == near(0.7 * 9.0 * (1.0 / 2.0 - 1.0 / 4.0), rel=1e-14)
+    assert falling(free) == relaxation(scene('pivot', ''), 3.0) == 0.0
+    assert falling(scene('pivot', f'{heat}, gravity: {{g: 10}}')) == near(7.0, rel=1e-14)
+    assert falling(scene('pivot', 'gravity: {g: 10}')) == 0.0
+    pulled = scene('pivot', f'{heat}, spring: {{stiffness: 2.0, anchor: [0, 0, 1]}}')
+    assert falling(pulled) == math.inf
 
 
 def test_a_swing_has_the_momentum_of_its_rate_about_the_largest_moment():

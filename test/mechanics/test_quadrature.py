@@ -126,6 +126,31 @@ def test_heat_of_a_layer_that_is_over_before_the_first_node(damping):
 
 
 @pytest.mark.without_numba
+@pytest.mark.parametrize('off', [1e-12, 1e-60, 1e-160, 1e-300])
+@pytest.mark.parametrize('coefficient', [3.0, 1e5, 1e9])
+def test_a_burst_of_heat_after_a_long_rest_is_booked(coefficient, off):
+    """A rod (1, 4, 4) from its axis: m = (sin a, cos a), tan a = off e^(k t), k = c (1 - 1/4).
+
+    For all of that time nothing is dissipated, and then all within some 1/k.
+    """
+    scene = parse_scene('scene: s\nbody: {mass: 1.0, inertia: [1, 4, 4]}\nconstraint: free\n'
+                        f'effects: [internal_dissipation: {{coefficient: {coefficient!r}}}]\n'
+                        'initial: {angular_velocity: [1, 0, 0]}\n')
+    rate = 0.75 * coefficient
+
+    def states(times, out):
+        out[:] = 0.0
+        out[:, 0], out[:, 4] = times, 1.0
+        folds = np.log(off) + rate * times    # ln tan a
+        out[:, 5] = 1.0 / np.sqrt(1.0 + np.exp(2.0 * np.minimum(folds, 300.0)))
+        out[:, 6] = 0.25 / np.sqrt(1.0 + np.exp(np.clip(-2.0 * folds, -600.0, 700.0)))
+    start = np.empty((1, 14))
+    states(np.zeros(1), start)
+    quadrature = Quadrature(Actors(scene), states, start[0], 0.0)
+    assert quadrature.until(1e3)[DISSIPATED] == near(0.375, rel=1e-12)    # 1/2 - 1/8 J
+
+
+@pytest.mark.without_numba
 def test_a_torque_in_pieces_is_integrated_up_to_each_jump():
     scene = parse_scene(
         'scene: s\nbody: {mass: 1.0, inertia: [1, 1, 1]}\nconstraint: free\neffects: [torque: '
