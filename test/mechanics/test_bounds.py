@@ -196,14 +196,14 @@ def test_a_magnet_in_a_field_that_changes_counts_and_another_has_bounds():
 
 
 def test_heat_relaxes_a_body_at_the_rate_of_its_wobble_and_down_its_potentials():
-    """c L^2 (1/I_i - 1/I_max), and c times M g r = 2 10 0.5."""
+    """By c L^2 (1/I_i - 1/I_max), and by c M g r = c 2 10 0.5."""
     heat = 'internal_dissipation: {coefficient: 0.7}'
     free = scene('free', heat)
     assert relaxation(free, 3.0) == near(0.7 * 9.0 * (1.0 / 2.0 - 1.0 / 4.0), rel=1e-14)
     assert falling(free) == relaxation(scene('pivot', ''), 3.0) == 0.0
     assert falling(scene('pivot', f'{heat}, gravity: {{g: 10}}')) == near(7.0, rel=1e-14)
     assert falling(scene('pivot', 'gravity: {g: 10}')) == 0.0
-    pulled = scene('pivot', f'{heat}, spring: {{stiffness: 2.0, anchor: [0, 0, 1]}}')
+    pulled = scene('pivot', f'{heat}, {SPRING}')
     assert falling(pulled) == math.inf
 
 

@@ -50,7 +50,8 @@ def added(functions, edges, longest=math.inf, shortest=0.0, slack=0.0, speed=0.0
     sums[[ENERGY, MOMENTUM]] = size
     edges = np.array(edges, dtype=float)
     table = rates_of(functions, edges, speed, noise[0])
-    found = add_panels(table, edges, np.array(gained, dtype=float), *rates, longest, shortest, slack, noise[1], sums)
+    gained = np.array(gained, dtype=float)
+    found = add_panels(table, edges, gained, *rates, longest, shortest, slack, noise[1], sums)
     return (*found, sums)
 
 
@@ -109,7 +110,8 @@ def test_what_a_sum_loses_is_carried_on():
     sums = np.zeros(SUMS)
     sums[0] = 1e6
     edges = np.linspace(0.0, 1.0, 1001)
-    add_panels(rates_of({0: lambda t: 1e-3}, edges), edges, np.zeros(0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, sums)
+    rates = rates_of({0: lambda t: 1e-3}, edges)
+    add_panels(rates, edges, np.zeros(0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, sums)
     assert (sums[0] - 1e6) + sums[LOST] == near(1e-3, rel=1e-12)
 
 
