@@ -228,12 +228,12 @@ class Bound(Protocol):
     def at(self, stepped: Any) -> 'Bound':
         """Return the Bound of a solver that differs from the one bound in its accuracy alone."""
 
-    def runner(self, stepped: Any) -> Any:
+    def runner(self, stepped: Any, slow: float) -> Any:
         """Return (kernel, room), the quickest way to a final state, or None.
 
         ``kernel(room, vector, time, out)`` fills `out` with the bits of a course from that start
-        and returns points.REACHED, or something else where that takes a course. It works in
-        `room`: calls may not overlap.
+        and returns points.REACHED, or something else where that takes a course: so it does of a
+        body that turns slower than `slow` (rad/s). It works in `room`: calls may not overlap.
         """
 
     def course(self, stepped: Any) -> 'Course':

@@ -25,18 +25,20 @@ from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import GENERAL, METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
+from rigid_body_sim.integrators.growing import UNSEEN, Growing, unstable
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
 from rigid_body_sim.integrators.protocols import FINEST
 from rigid_body_sim.mechanics.bounds import drive, swing_rate, unbounded
 from rigid_body_sim.mechanics.energy import DIAGNOSIS_SIZE
 from rigid_body_sim.mechanics.events import Watcher, watches
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE
+from rigid_body_sim.mechanics.ledger import ANGULAR_IMPULSE, ENTRIES_SIZE
 from rigid_body_sim.mechanics.parameters import parameters
 from rigid_body_sim.mechanics.potential import energies
 from rigid_body_sim.mechanics.quadrature import Actors, Quadrature
 from rigid_body_sim.numerics.functions import hypot3
 from rigid_body_sim.scene.constraints.protocol import Mechanism
+from rigid_body_sim.scene.effects.wrench import Wrench
 from rigid_body_sim.scene.state import ANGULAR_VELOCITY, TIME
 from rigid_body_sim.scene.winding import may_reach_ends
 
@@ -106,10 +108,12 @@ class Stepped:
         self._bound = self.method.FAMILY.bind(self.method, self)
         self._ledger = _Ledger(scene, wrench, horizon)
         self._departs = step is None and applies(scene, wrench)
+        self._may_grow = step is None and not self._departs and not on_table
         self._may_wind = scene.wound.constraint != scene.constraint
         self._carried = scene.frame.path is not None
         self._may_leave_doubles = self._carried or step is not None
         self._mechanics = parameters(scene) if step is not None else None
+        self.stop = math.inf
         # of a solver that was started
         self.vector, self.begin, self._latest, self._course = None, None, None, None
         self._quadrature, self._watcher = None, None
@@ -144,11 +148,7 @@ class Stepped:
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
         started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        near = departure(self.scene, vector) if self._departs else None
-        if near is None:
-            started._course = self._marching(started)
-        else:
-            started._course = Departing(near, started._march_from)
+        started._course = started._before_march() or started._marching()
         return started
 
     @functools.cached_property
@@ -164,8 +164,9 @@ class Stepped:
         It has the bits of ``self.start(start).state(time, out)``, in a third of the time where the
         run is short. Calls may not overlap: each thread makes a runner of its own.
         """
-        alone = self._departs or self._may_wind or self._carried
-        found = None if alone else self._bound.runner(self)
+        slow = self._slow
+        alone = self._departs or self._may_wind or self._carried or slow == math.inf
+        found = None if alone else self._bound.runner(self, slow)
         if found is None:
             return self._run
         run = repeated(*found, REACHED, self._run)
@@ -181,17 +182,49 @@ class Stepped:
     def _run(self, start, time, out):
         self.start(start).state(time, out)
 
-    def _march_from(self, vector):
-        """Return the course that goes on from a state after a departure."""
+    def _march_from(self, vector, stop=math.inf):
+        """Return the course that goes on from a state, with a step that ends at a time (s)."""
         later = object.__new__(Stepped)
         later.__dict__.update(self.__dict__)
-        later.vector, later.begin = vector, float(vector[TIME])
-        return self._marching(later)
+        later.vector, later.begin, later.stop = vector, float(vector[TIME]), stop
+        return later._marching()
 
-    def _marching(self, started):
-        """Return the course that marches from the vector of a started solver."""
-        course = self._bound.course(started)
-        return Arriving(self.scene, course, started.vector) if self._departs else course
+    def _marching(self):
+        """Return the course that marches from the start."""
+        course = self._bound.course(self)
+        return Arriving(self.scene, course, self.vector) if self._departs else course
+
+    def _before_march(self):
+        """Return the course of what goes before a march, or None."""
+        if self._departs:
+            near = departure(self.scene, self.vector)
+            return Departing(near, self._march_from) if near else None
+        rate = self._growth(self.vector)
+        return Growing(unstable(self.scene), self.wrench or Wrench(), self.vector, rate,
+                       self._bound.equations.breakpoints, self._march_from) if rate else None
+
+    def _growth(self, vector):
+        """Return the rate (1/s) at which what cannot be seen yet grows from a start, or 0."""
+        if not (self._may_grow and (grows := unstable(self.scene)).may_grow(vector)):
+            return 0.0
+        wrench = self.wrench or Wrench()
+        unseen = grows.shown(vector, wrench) < UNSEEN
+        return grows.rate(vector, wrench) if unseen else 0.0
+
+    def _unclear(self, starts, rates):
+        """Return which of some slow bodies it takes `_growth` for, whose |omega| is `rates`."""
+        times = starts[:, TIME]
+        if not len(times) or times.min() < times.max():    # other things may act on them
+            return np.full(len(times), True)
+        actors = self._ledger.actors
+        found = actors.rates(actors.held(float(times[0])), np.ascontiguousarray(starts))
+        x, y, z = found[:, ANGULAR_IMPULSE].T
+        return unstable(self.scene).unclear(rates, np.sqrt(x * x + y * y + z * z))
+
+    @property
+    def _slow(self):
+        """The rate (rad/s) of a start from which something faster may grow, at most."""
+        return unstable(self.scene).slow if self._may_grow else 0.0
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s); raises what `states` raises."""
@@ -258,6 +291,10 @@ class Stepped:
             with _naming(body):
                 self.start(starts[body])._within(first, last)
         on_all_cores(side_by_side, len(starts), 16 * LANES)
+        slow = np.flatnonzero(rates < self._slow)
+        for body in slow[self._unclear(starts[slow], rates[slow])]:
+            if self._growth(starts[body]):    # side by side bodies go in no stretches
+                one_by_one(slice(body, body + 1))
 
     def _check(self, rows):
         """Raise if a state is beyond what doubles hold.

@@ -152,13 +152,28 @@ class Dynamics:
 
     def balance(self, vector, wrench=Wrench()):    # noqa: B008 (immutable)
         """Return the Balance at a state (14 doubles) under a held wrench, just after its time."""
+        found = self._of(*self._at(vector, wrench))
+        return Balance(*(np.array(part) for part in found))
+
+    def rates(self, vector, wrench=Wrench()):    # noqa: B008 (immutable)
+        """Return how a state changes, array (4, 3).
+
+        The rate at which the axes turn and omega' (body axes, rad/s and rad/s^2), the velocity of
+        the origin and its rate (world axes, m/s and m/s^2).
+        """
+        motion, acting = self._at(vector, wrench)
+        acceleration, growth, *_ = self._of(motion, acting)
+        return np.array([plus(motion.omega, acting.turning), growth, motion.velocity,
+                         acceleration])
+
+    def _at(self, vector, wrench):
+        """Return the Motion of a state and the Actions there."""
         time, q, omega, position, velocity = STATE.load(vector.tolist())
         R = matrix(*q)
         of_center = plus(velocity, apply(R, cross(omega, self._scene.center)))
         center = plus(position, apply(R, self._scene.center))
         acting = self._actions(time, q, omega, of_center, center, wrench)
-        found = self._of(Motion(R, omega, position, velocity, time), acting)
-        return Balance(*(np.array(part) for part in found))
+        return Motion(R, omega, position, velocity, time), acting
 
     def reactions(self, vectors, wrenches):
         """Return the Reactions at states (n, 14) under the wrench held at each."""

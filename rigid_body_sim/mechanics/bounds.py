@@ -125,8 +125,12 @@ def falling(scene):
     """
     if scene.inner_dissipation == 0.0:
         return 0.0
-    torque = reduce(add, (bounds.energy for bounds in _bounds(scene)), 0.0)
-    return math.inf if _swings_unbounded(scene) else scene.inner_dissipation * torque
+    return math.inf if _swings_unbounded(scene) else scene.inner_dissipation * pull(scene)
+
+
+def pull(scene):
+    """Return about the largest torque (N m) of the potentials whose range is known: half of it."""
+    return reduce(add, (bounds.energy for bounds in _bounds(scene)), 0.0)
 
 
 def drive(scene, wrench):

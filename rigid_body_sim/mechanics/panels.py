@@ -159,6 +159,8 @@ def _add(rates, at, length, sums):
 def add_panels(rates, edges, gained, relaxation, falling, longest, shortest, slack, noise, sums):
     """Add panels of one length, until one should be shorter or the next one longer.
 
+    More than eight arguments: what a panel is judged by, as numbers of a kernel.
+
     Parameters
     ----------
     rates : array (panels POINTS, COLUMNS)

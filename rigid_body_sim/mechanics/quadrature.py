@@ -20,12 +20,13 @@ from rigid_body_sim.mechanics.bounds import (
     cancelling_terms,
     drive,
     falling,
+    pull,
     relaxation,
     resting,
     swing_rate,
 )
 from rigid_body_sim.mechanics.energy import DIAGNOSIS, KINETIC, POTENTIAL, carried_energy
-from rigid_body_sim.mechanics.ledger import ENTRIES_SIZE, WORK
+from rigid_body_sim.mechanics.ledger import DISSIPATED, ENTRIES_SIZE, WORK
 from rigid_body_sim.mechanics.panels import (
     COLUMNS,
     ENERGY,
@@ -80,7 +81,7 @@ class Actors:
     swing, drive : float
         Bounds of the rates (bounds.py), rad/s and rad/s^2.
     noise : float
-        What rounding leaves of terms of the torque that cancel, N m.
+        What rounding leaves of terms of the torque that cancel, as those of a weight, N m.
     relaxation, falling : float
         Rates at which heat relaxes the body (bounds.py): over the square of its |omega|, s, and
         down its potentials, 1/s.
@@ -100,10 +101,13 @@ class Actors:
         self.acts = any(one.gives != 'force' or one.books != 'potential' for one in found)
         self.swing, self.drive = swing_rate(scene), drive(scene, wrench)
         self._resting = resting(scene)
-        self.relaxation = relaxation(scene, max(scene.constraint.inertia(scene.body).moments))
+        moments = scene.constraint.inertia(scene.body).moments
+        self.relaxation = relaxation(scene, max(moments))
         self.falling = falling(scene)
         terms = cancelling_terms(scene, horizon)
-        self._noise_of_force, self.noise = CANCELLED * terms.force, CANCELLED * terms.torque
+        self._noise_of_force = CANCELLED * terms.force
+        self.noise = CANCELLED * (terms.torque + pull(scene))
+        self._inner, self._largest = scene.inner_dissipation, max(moments)
 
     def _acting(self, time):
         return [one for actor in self._actors for one in actor.acting(self._frame, time)]
@@ -126,6 +130,10 @@ class Actors:
         x, y, z = states[:, VELOCITY].T
         speed = np.sqrt(x * x + y * y + z * z)
         out[:, NOISE] = self.noise * out[:, OMEGA] + self._noise_of_force * speed
+        if self._inner > 0.0:    # the heat u^2/c, u = c times torques that nearly cancel
+            omega = out[:, OMEGA]
+            torque = self.noise + CANCELLED * self._largest * omega * omega
+            out[:, NOISE] += 2.0 * torque * np.sqrt(self._inner * np.abs(out[:, DISSIPATED]))
         return out
 
     def carried(self, vector):

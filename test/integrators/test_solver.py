@@ -93,19 +93,20 @@ def test_a_run_is_left_to_a_course_where_one_call_does_not_do(status, step, valu
     of = types.SimpleNamespace(
         _departs=False, _may_wind=False, _carried=False, step=step,
         _run=lambda *them: asked.append(them[:2]),
-        _bound=types.SimpleNamespace(runner=lambda of: (final, room)))
+        _bound=types.SimpleNamespace(runner=lambda of, slow: (final, room)), _slow=0.5)
     out = np.zeros(3)
     Stepped.runner(of)(1.0, 2.0, out)
     assert asked == [(1.0, 2.0)] * again
     assert out[:2].tolist() == [1.0, 2.0]
 
 
-@pytest.mark.parametrize('what', ['_departs', '_may_wind', '_carried', 'none'])
+@pytest.mark.parametrize('what', ['_departs', '_may_wind', '_carried', '_slow', 'none'])
 def test_what_is_more_than_a_march_runs_as_a_course(what):
     of = types.SimpleNamespace(_departs=False, _may_wind=False, _carried=False, _run=object(),
-                               _bound=types.SimpleNamespace(runner=lambda of: None))
+                               _bound=types.SimpleNamespace(runner=lambda of, slow: None),
+                               _slow=0.5)
     if what != 'none':
-        setattr(of, what, True)
+        setattr(of, what, math.inf if what == '_slow' else True)
         of._bound = None    # it is not asked
     assert Stepped.runner(of) is of._run
 
@@ -191,7 +192,8 @@ def side_by_side(monkeypatch, failed, carried=False):
     batch = types.SimpleNamespace(
         run=lambda starts, out: asked.append(starts[:, 1].tolist()) or failed(starts))
     of = types.SimpleNamespace(
-        _may_wind=False, _bound=None, _carried=carried, scene='scene',
+        _may_wind=False, _bound=None, _carried=carried, scene='scene', _slow=0.0,
+        _unclear=lambda starts, rates: np.full(len(starts), True),
         method=types.SimpleNamespace(FAMILY=types.SimpleNamespace(
             LANES=True, batch=lambda bound, of, times: batch)),
         start=lambda vector: types.SimpleNamespace(

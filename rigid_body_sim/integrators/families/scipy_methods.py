@@ -17,6 +17,7 @@ import numpy as np
 
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.equations import Equations
+from rigid_body_sim.integrators.marching.course import stops_after
 from rigid_body_sim.integrators.marching.work import TooMuchWork, Work
 from rigid_body_sim.scene.state import STATE_SIZE, TIME
 
@@ -52,7 +53,7 @@ class Bound:
         """Return the Bound of a solver that differs in its accuracy: this one."""
         return self
 
-    def runner(self, stepped):
+    def runner(self, stepped, slow):
         """Return None: runs are those of a course."""
 
     def course(self, stepped):
@@ -80,7 +81,7 @@ class _Course:
         for first, last, absolute in equations.groups:
             if not absolute:
                 self._scales[first:last] = max(1.0, float(np.linalg.norm(y[first:last])))
-        self._ends = [time for time in equations.breakpoints if time > self._begin] + [math.inf]
+        self._ends = stops_after(self._begin, equations.breakpoints, stepped.stop)
         self._reached, self._steps, self._parameters = [], [], []
         self._solver = None
 

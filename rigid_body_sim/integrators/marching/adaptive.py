@@ -44,6 +44,7 @@ MOVING = ROUNDING + 1
 WEIGHTS = MOVING + 1
 GROWTH, SHRINK, SAFETY = 4.0, 0.1, 0.9
 SPEED = 10.0               # 1/s, of a first step where nothing moves yet
+LONGEST_FIRST = 2.0 ** 20  # s: TRIALS refusals lead to any step from there
 TRIALS = 60                # refusals of one step after which it is given up
 
 
@@ -55,7 +56,8 @@ def begin(p, control, point):
     control[MOVING], scales = balanced(control[MOVING], load_scales(point, SCALES), k)
     put_scales(scales, point, SCALES)
     speed = fastest(y, k)
-    point[STEP] = power(control[TOLERANCE], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+    first = power(control[TOLERANCE], 1.0 / ORDER) / (speed if speed > 0.0 else SPEED)
+    point[STEP] = min(first, LONGEST_FIRST)
 
 
 @compiled

@@ -56,18 +56,21 @@ class Bound:
         other._prototypes = {}
         return other
 
-    def runner(self, stepped):
+    def runner(self, stepped, slow):
         """Return (kernel, room) of ``kernel(room, vector, time, out)``, or None.
 
         The kernel fills `out` as a course from that start does, and returns REACHED; where it
-        returns something else, a course is to go there. `room` is its memory, so calls may not
-        overlap. None where what acts has kinks.
+        returns something else, a course is to go there: so it is of a body that turns slower than
+        `slow` (rad/s). `room` is its memory, so calls may not overlap. None where what acts has
+        kinks.
         """
         if self.equations.modes:
             return None
         last = self.equations.breakpoints[-1] if self.equations.breakpoints else -math.inf
         room = np.concatenate((self.prototype(last), np.empty(self.piece_size)))
         room[self.point + TIME] = last    # from when on what acts is constant
+        if slow > 0.0:
+            room[self.point + STEP] = slow * slow
         return self.track.final, room
 
     def course(self, stepped):

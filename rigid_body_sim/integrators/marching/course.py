@@ -30,6 +30,11 @@ NO_STEP = -math.inf, math.inf    # what holds a time where nothing is stepped
 AT_ONCE = 4096    # states of one call of a kernel
 
 
+def stops_after(begin, breakpoints, stop=math.inf):
+    """Return the times after a beginning at which a step ends, s, and infinity."""
+    return sorted({time for time in (*breakpoints, stop, math.inf) if time > begin})
+
+
 def lost(method, scene, time):
     """Return the NotConverged of a march that ends at a time (s)."""
     time = float(time)
@@ -48,9 +53,8 @@ class Course:
         self._method, self._scene, self._most = stepped.method, stepped.scene, stepped.most
         self._begin, self._vector = stepped.begin, stepped.vector
         self._bound, self._pieces, self._ends = bound, [], FOR_EVER
-        if bound.equations.breakpoints:
-            later = [time for time in bound.equations.breakpoints if time > self._begin]
-            self._ends = [*later, math.inf]
+        if bound.equations.breakpoints or stepped.stop < math.inf:
+            self._ends = stops_after(self._begin, bound.equations.breakpoints, stepped.stop)
 
     def kinks(self, until):
         """Return the times of kinks: none."""

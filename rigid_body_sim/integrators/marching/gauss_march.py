@@ -109,6 +109,7 @@ TRIALS = 60              # largest number of attempts at a step
 MOST_SWEEPS = 45         # most sweeps of an attempt: slower convergence asks for a smaller step
 COMFORTABLE = 13         # beyond so many sweeps longer steps cost more than they save
 FIRST, UNMOVED = 0.5, 1e-3    # the first step: rad of the fastest unknown; s, where nothing moves
+LONGEST_FIRST = 2.0 ** 20     # s: TRIALS attempts find a step from there
 FIRST_SWEEPS = 4         # sweeps of a step without one before it
 ROUNDING = 2.0 ** -60    # share of an increment that is nothing to it
 NOISE = 2.0 ** -44       # share of an increment: smaller changes that no longer fall are rounding
@@ -164,7 +165,7 @@ def begin(p, control, point):
     y = load(point, int(VALUES))
     k = rate(p, y)
     speed = fastest(y, k)
-    h = FIRST / speed if speed > 0.0 else UNMOVED
+    h = min(FIRST / speed, LONGEST_FIRST) if speed > 0.0 else UNMOVED
     point[STEP], point[SWEEPS] = 0.0 if control[FIXED] > 0.0 else h, 1.0
     control[MOVING], scales = balanced(control[MOVING], load_scales(point, SCALES), k)
     put_scales(first_scales(scales, y, k, h), point, SCALES)
@@ -381,9 +382,11 @@ def _step(p, control, here, end):
     for _ in range(TRIALS):
         t1, h = _span(control, here, h, end)
         pull = _pull(control, h, scales)
-        allowed = max(control[TOLERANCE] * h, LEAST_ERROR, CANCELLED * pull)
-        mean, used, fewer, good = solve(
-            p, S, here.y, h, before, here.sweeps, allowed, pull, scales)
+        seen = max(control[TOLERANCE] * h, LEAST_ERROR)
+        allowed = max(seen, CANCELLED * pull)
+        # a first step has no prediction that would be good where what moves is small beside pull
+        mean, used, fewer, good = solve(p, S, here.y, h, before, here.sweeps,
+                                        allowed if before > 0.0 else seen, pull, scales)
         if fixed:
             next_step = here.step + 1.0
             break

@@ -21,7 +21,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.euler import INVERSE
 from rigid_body_sim.integrators.marching import sides
-from rigid_body_sim.integrators.marching.course import NO_STEP, Course
+from rigid_body_sim.integrators.marching.course import NO_STEP, Course, stops_after
 from rigid_body_sim.integrators.marching.dips import dip
 from rigid_body_sim.integrators.marching.points import (
     SCALES,
@@ -52,6 +52,7 @@ class Start(NamedTuple):
     step: float | None
     begin: float
     vector: np.ndarray
+    stop: float
 
 
 class Stretch(NamedTuple):
@@ -136,7 +137,7 @@ class Switched:
 
     def __init__(self, stepped, bound):
         self._method, self._scene, self._most = stepped.method, stepped.scene, stepped.most
-        self._step, self._slowest = stepped.step, 1.0 / stepped.horizon
+        self._step, self._slowest, self._stop = stepped.step, 1.0 / stepped.horizon, stepped.stop
         self._bound, equations = bound, bound.equations
         self._kernels = specialise(sides, switching=equations.switching_source(),
                                    COUNT=f'COUNT = {len(equations.modes)}\n')
@@ -186,7 +187,7 @@ class Switched:
         return self._courses[place]
 
     def _start(self, begin, vector):
-        return Start(self._method, self._scene, self._most, self._step, begin, vector)
+        return Start(self._method, self._scene, self._most, self._step, begin, vector, self._stop)
 
     def _reach(self, target):
         """Look ahead until every kink up to a time (s) is known."""
@@ -222,7 +223,7 @@ class Switched:
     def _enter(self, vector, head):
         """Begin a stretch at a state (14 doubles, which stay as they are)."""
         equations, begin = self._bound.equations, float(vector[TIME])
-        later = [time for time in equations.breakpoints if time > begin]
+        end = stops_after(begin, equations.breakpoints, self._stop)[0]
         found, rests = self._sides(vector), False
         modes = [float(side > 0.0) - float(side < 0.0) for side in found]
         undecided = [k for k, mode in enumerate(modes) if mode == 0.0]
@@ -234,8 +235,7 @@ class Switched:
             undecided = [k for k in undecided if k not in equations.gripping]
         for k in () if rests else undecided:
             modes[k] = self._tried(vector, modes, k, head)
-        self._stretches.append(Stretch(begin, later[0] if later else math.inf, vector,
-                                       tuple(modes), rests, head))
+        self._stretches.append(Stretch(begin, end, vector, tuple(modes), rests, head))
         self._begins.append(begin)
         self._seen, self._spacing = begin, SHORTEST
         self._margins_seen = ()    # at the last two looks of the stretch

@@ -87,7 +87,7 @@ class OnTable:
         """Return the Bound of a solver that differs in its accuracy: this one."""
         return self
 
-    def runner(self, stepped):
+    def runner(self, stepped, slow):
         """Return None: runs are those of a course."""
 
     def course(self, stepped):

@@ -15,7 +15,7 @@ import math
 
 from rigid_body_sim.compilation.jit import compiled
 from rigid_body_sim.compilation.templates import UNBOUND
-from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, TIME
+from rigid_body_sim.integrators.marching.points import LOST, PAUSED, REACHED, STEP, TIME
 from rigid_body_sim.numerics.vectors import dot
 from rigid_body_sim.scene.state import STATE
 
@@ -151,13 +151,15 @@ def first_state(prototype, vector, piece, time, end, out):
 def in_steps(room, vector, time, out):
     """Fill out with the state at a time after a start, in one call; return as `follow` does.
 
-    LOST also stands for a time that cannot be reached from the start, or not without a breakpoint.
+    LOST also stands for a time that cannot be reached from the start, or not without a breakpoint,
+    and for a start so slow that it may be an unstable one (growing.py).
 
     Parameters
     ----------
     room : array
         A prototype, with the time from which on what acts is constant in place of that of its
-        point, and a piece, which is filled anew.
+        point, and with the square of the slowest |omega| in place of its step; and a piece, which
+        is filled anew.
     """
     if not _can_be_reached(room, vector, time):
         return LOST
@@ -190,10 +192,12 @@ def without_points(room, vector, time, out):
 
 @compiled
 def _can_be_reached(room, vector, time):
-    """Return whether doubles count the turns until a time, and what acts is constant till then."""
+    """Return whether doubles count the turns until a time, and one march alone leads there."""
     start_time, omega = load_state(vector).time, load_state(vector).angular_velocity
-    turns = (time - start_time) * math.sqrt(dot(omega, omega))
-    return time >= start_time >= room[POINT + TIME] and turns < MOST_TURNS
+    square = dot(omega, omega)
+    turns = (time - start_time) * math.sqrt(square)
+    alone = start_time >= room[POINT + TIME] and square >= room[POINT + STEP]
+    return alone and time >= start_time and turns < MOST_TURNS
 
 
 final = UNBOUND

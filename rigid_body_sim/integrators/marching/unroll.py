@@ -99,7 +99,7 @@ def trial_source(method, n, extra, groups):
             '    fifth, third = h * h * fifth, h * h * third',
             '    below = fifth + 0.01 * third',
             '    error = fifth / math.sqrt(below) '
-            f'if not fifth <= {ROUNDING * ROUNDING!r} * moved else 0.0',
+            f'if not fifth <= {ROUNDING * ROUNDING!r} * moved < math.inf else 0.0',
             f'    return {sums(n + extra)}, {losses(n + extra)}, '
             f'({"".join(f"{square}, " for square in squares)}), error',
             '',

@@ -45,7 +45,8 @@ class Solver:
         return lambda time: y
 
 
-def course(effects=JUMPS, omega=(0.0, 2.0, 3.0), accuracy=1e-9, most=None, fails=None):
+def course(effects=JUMPS, omega=(0.0, 2.0, 3.0), accuracy=1e-9, most=None, fails=None,
+           stop=math.inf):
     """Return the course of a ball on a pivot from 0.25 s on."""
     scene = parse_scene(f'scene: s\nbody: {{mass: 1, inertia: {[INERTIA] * 3}}}\n'
                         f'constraint: pivot\neffects: [{effects}]\ninitial: {{}}\n')
@@ -53,7 +54,8 @@ def course(effects=JUMPS, omega=(0.0, 2.0, 3.0), accuracy=1e-9, most=None, fails
     vector = scene.initial.vector.copy()
     vector[0], vector[5:8] = 0.25, omega
     return _Course(types.SimpleNamespace(
-        scene=scene, method=METHODS['lsoda'], vector=vector, most=most, accuracy=accuracy),
+        scene=scene, method=METHODS['lsoda'], vector=vector, most=most, accuracy=accuracy,
+        stop=stop),
         Equations(scene), Solver)
 
 
@@ -146,11 +148,12 @@ def test_a_trial_counts_each_step_as_ten_from_where_it_goes_on():
 def test_a_bound_is_for_any_accuracy_and_has_no_runner():
     of = course()
     stepped = types.SimpleNamespace(scene=of._scene, wrench=None, method=METHODS['radau'],
-                                    vector=of._scene.initial.vector, most=None, accuracy=1e-6)
+                                    vector=of._scene.initial.vector, most=None, accuracy=1e-6,
+                                    stop=math.inf)
     bound = scipy_methods.bind(METHODS['radau'], stepped)
     assert isinstance(bound, Bound)
     assert bound.solver.__name__ == 'Radau'
     assert bound.at(stepped) is bound
-    assert bound.runner(stepped) is None
+    assert bound.runner(stepped, 0.0) is None
     assert bound.KEEPS_ENTRIES is False
     assert isinstance(bound.course(stepped), _Course)

@@ -88,13 +88,15 @@ def test_a_solver_of_another_accuracy_shares_all_but_where_its_marches_begin(mon
 def test_a_run_in_one_call_begins_after_the_last_breakpoint(breakpoints, last, monkeypatch):
     of, stepped, asked, _ = made(monkeypatch, breakpoints)
     of.track = types.SimpleNamespace(final='kernel')
-    kernel, room = of.runner(stepped)
+    kernel, room = of.runner(stepped, 0.0)
     assert (kernel, asked) == ('kernel', [last])
     assert len(room) == 5 + LENGTH + SIZE
     assert room[:5].tolist() == [last, 1.0, 2.0, 0.5, 7.0]
     assert room[5 + TIME] == last
     assert room[5 + TIME + 1:5 + LENGTH].tolist() == [*range(1, LENGTH)]
-    assert made(monkeypatch, (), [0])[0].runner(stepped) is None
+    _, room = of.runner(stepped, 3.0)    # a slower body is left to a course
+    assert room[5 + TIME:5 + LENGTH].tolist() == [last, 9.0, *range(2, LENGTH)]
+    assert made(monkeypatch, (), [0])[0].runner(stepped, 0.0) is None
     assert not of.KEEPS_ENTRIES
 
 

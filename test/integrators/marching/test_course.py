@@ -35,13 +35,13 @@ class Bound:
         return int(piece[1])
 
 
-def started(*how, begin=0.0):
+def started(*how, begin=0.0, stop=math.inf):
     """Return a course, on which 3 and the number of its steps stand for an unknown."""
     vector = np.zeros(STATE_SIZE)
     vector[0], vector[8] = begin, 3.0
     stepped = types.SimpleNamespace(
         method=types.SimpleNamespace(NAME='made'), scene=types.SimpleNamespace(name='up'),
-        most=None, begin=begin, vector=vector)
+        most=None, begin=begin, vector=vector, stop=stop)
     bound = Bound(*how)
     return course.Course(stepped, bound), bound
 

@@ -109,6 +109,7 @@ class Made(Switched):
         self._method = types.SimpleNamespace(NAME='made')
         self._scene, self._most = types.SimpleNamespace(name='up'), None
         self._slowest, self._step, self._winds = 1.0 / horizon, None, False
+        self._stop = math.inf
         self._made, self._sides_of, self._pull_of = course, sides, pull
         self._bound = types.SimpleNamespace(equations=types.SimpleNamespace(**{
             'breakpoints': (), 'grip': 0.0, 'gripping': (), 'in_field': False} | equations),
@@ -302,7 +303,7 @@ def test_a_march_between_kinks_is_given_its_sides_and_begins_as_the_one_before(s
         prototype=lambda time: prototype, set_head=lambda piece, head: heads.append(head),
         track=types.SimpleNamespace(
             first_piece=lambda *what: filled.append([one.tolist() for one in what[:2]])))
-    start = switched.Start(None, None, None, step, 2.0, np.ones(3))
+    start = switched.Start(None, None, None, step, 2.0, np.ones(3), math.inf)
     Within(start, bound, (-1.0, 0.0), head)
     assert filled == [[[0.0, -1.0, 2.0, 0.0, 4.0], [1.0, 1.0, 1.0]]]
     assert prototype.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]    # others share it
@@ -365,7 +366,8 @@ def test_a_course_with_kinks_begins_with_a_march_of_its_own(hinge, winds, monkey
     start = np.zeros(STATE_SIZE)
     start[0] = 2.0
     of = Switched(types.SimpleNamespace(
-        method=None, scene=None, most=None, step=None, horizon=4.0, vector=start),
+        method=None, scene=None, most=None, step=None, horizon=4.0, vector=start,
+        stop=math.inf),
         types.SimpleNamespace(equations=equations))
     assert (of._slowest, of._winds, of._stalls, of._steps) == (0.25, winds, 0, 0)
     stretch, = of._stretches
