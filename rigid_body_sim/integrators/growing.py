@@ -44,6 +44,7 @@ UNSEEN = 1e-3     # share of r max(|omega|, r): a smaller omega' shows no leavin
 SEEN = 0.1        # a larger one does
 STILL = 1e-3      # share of the bound of r: what turns faster about a hinge leaves nothing
 SLOWEST = 1e-3    # share of the bound of r: a slower growth is not looked for
+LEAN = 0.1        # rad, in which what turns on and stands is to stand
 LOOKS = 32        # stretches between two looks at the Jacobian
 MOST = 2 ** 14    # stretches, more than doubles can grow in
 STEP = 1e-4       # of differences, share of the size of the unknown
@@ -108,12 +109,21 @@ class Unstable:
         rate = tuple(self._rates(vector, wrench)[OMEGA].tolist())
         speed = hypot3(*omega)
         bound = self._bound(speed)
-        if self._hinge is None and speed > STILL * bound:
-            # the part along omega changes no direction
+        turns = self._hinge is None and speed > STILL * bound
+        if turns:    # the part along omega changes no direction
             rate = minus(rate, scaled(dot(rate, omega) / (speed * speed), omega))
-        elif speed > 0.0 and not any(rate):
+        size = hypot3(*rate)
+        if turns and size < UNSEEN * bound * max(speed, bound):
+            size = max(size, self._changed(vector, scaled(LEAN / speed, omega), wrench))
+        if size == 0.0 and speed > 0.0 and not turns:
             return STILL * UNSEEN    # it passes the state
-        return hypot3(*rate) / (bound * max(speed, bound)) if any(rate) else 0.0
+        return size / (bound * max(speed, bound)) if size > 0.0 else 0.0
+
+    def _changed(self, vector, turn, wrench):
+        """Return by how much omega' changes as the body turns on, rad/s^2."""
+        ahead, behind = (self._rates(_moved(vector, TURN, sign * np.array(turn), self._held),
+                                     wrench)[OMEGA] for sign in (1.0, -1.0))
+        return 0.5 * hypot3(*(ahead - behind).tolist())
 
     def rate(self, vector, wrench):
         """Return r at a state (14 doubles) where it is the fastest that there is, else 0; 1/s."""
