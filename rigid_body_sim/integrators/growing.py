@@ -67,7 +67,6 @@ class Unstable:
     """
 
     def __init__(self, scene):
-        self._scene, self._dynamics = scene, None
         self._still = swing_rate(scene)
         fall = falling(scene)
         self._open = pushed_unbounded(scene) or fall == math.inf
@@ -76,10 +75,12 @@ class Unstable:
         self._heat = relaxation(scene, self._largest)
         self._hinge = scene.constraint.axis
         self._held = scene_parameters(scene).through
+        self._moves = scene.constraint.mechanism is Mechanism.FREE
         if self._open or self._heat > 0.0:
             self.slow = math.inf
         else:
             self.slow = self._still if self._hinge is None else STILL * self._still
+        self._dynamics = Dynamics(scene) if self.slow > 0.0 else None
 
     def _bound(self, speed):
         """Return a bound of r for a body that turns with a speed (rad/s)."""
@@ -121,18 +122,16 @@ class Unstable:
 
     def _changed(self, vector, turn, wrench):
         """Return by how much omega' changes as the body turns on, rad/s^2."""
-        ahead, behind = (self._rates(_moved(vector, TURN, sign * np.array(turn), self._held),
-                                     wrench)[OMEGA] for sign in (1.0, -1.0))
+        ahead, behind = (
+            self._rates(_moved(vector, TURN, sign * np.array(turn), self._held), wrench)[OMEGA]
+            for sign in (1.0, -1.0))
         return 0.5 * hypot3(*(ahead - behind).tolist())
 
     def rate(self, vector, wrench):
         """Return r at a state (14 doubles) where it is the fastest that there is, else 0; 1/s."""
         speed = hypot3(*vector[ANGULAR_VELOCITY].tolist())
         bound = self._bound(speed)
-        try:
-            jacobian = self._jacobian(vector, wrench, max(speed, bound))
-        except (ArithmeticError, ValueError):    # an expression has no value beside the state
-            return 0.0
+        jacobian = self._jacobian(vector, wrench, max(speed, bound))
         if not np.isfinite(jacobian).all():
             return 0.0
         found = fastest_growth(jacobian)
@@ -140,15 +139,16 @@ class Unstable:
         return found if found > least else 0.0
 
     def _rates(self, vector, wrench):
-        """Return turn', omega', place', velocity' at a state, where turn is 0, array (4, 3)."""
-        if self._dynamics is None:
-            self._dynamics = Dynamics(self._scene)
-        return self._dynamics.rates(vector, wrench)
+        """Return Dynamics.rates at a state; not numbers where an expression has no value."""
+        try:
+            return self._dynamics.rates(vector, wrench)
+        except (ArithmeticError, ValueError):
+            return np.full((4, 3), math.nan)
 
     def _jacobian(self, vector, wrench, fastest):
         """Return the Jacobian; of a body on a hinge that along the axis, shape (2, 2)."""
         sizes = [1.0, fastest]
-        if self._scene.constraint.mechanism is Mechanism.FREE:
+        if self._moves:
             sizes += [1.0 + hypot3(*vector[POSITION].tolist()),
                       1.0 + hypot3(*vector[VELOCITY].tolist())]
         axes = np.eye(3) if self._hinge is None else np.array([self._hinge])

@@ -208,8 +208,9 @@ class Stepped:
         if not (self._may_grow and (grows := unstable(self.scene)).may_grow(vector)):
             return 0.0
         wrench = self.wrench or Wrench()
-        unseen = grows.shown(vector, wrench) < UNSEEN
-        return grows.rate(vector, wrench) if unseen else 0.0
+        with np.errstate(all='ignore'):    # numbers that are beyond doubles grow nowhere
+            unseen = grows.shown(vector, wrench) < UNSEEN
+            return grows.rate(vector, wrench) if unseen else 0.0
 
     def _unclear(self, starts, rates):
         """Return which of some slow bodies it takes `_growth` for, whose |omega| is `rates`."""
