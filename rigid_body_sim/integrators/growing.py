@@ -87,12 +87,9 @@ class Unstable:
         known = self._still + self._heat * speed * speed
         return known + (UNBOUNDED + speed) if self._open else known
 
-    def may_grow(self, vector):
-        """Return whether it takes a look at the rates to know whether a deviation may grow."""
-        speed = hypot3(*vector[ANGULAR_VELOCITY].tolist())
-        if not speed < self.slow:
-            return False
-        return speed < self._bound(speed) or self._open
+    def may_grow(self, speed):
+        """Return whether a deviation may grow faster than a body turns, at rates (rad/s)."""
+        return (speed < self.slow) & (self._open | (speed < self._bound(speed)))
 
     def unclear(self, speeds, torques):
         """Return which of many bodies take a look at the rates, from |omega| and |torque|, (n,).
@@ -200,7 +197,8 @@ class Growing:
     Parameters
     ----------
     grows : Unstable
-    wrench : effects.wrench.Wrench or None
+    wrench : effects.wrench.Wrench
+        Held all the time.
     vector : array (14,)
         The start.
     rate : float

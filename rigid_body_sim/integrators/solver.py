@@ -113,7 +113,7 @@ class Stepped:
         self._carried = scene.frame.path is not None
         self._may_leave_doubles = self._carried or step is not None
         self._mechanics = parameters(scene) if step is not None else None
-        self.stop = math.inf
+        self.stop = math.inf    # where a step is to end, s
         # of a solver that was started
         self.vector, self.begin, self._latest, self._course = None, None, None, None
         self._quadrature, self._watcher = None, None
@@ -205,22 +205,27 @@ class Stepped:
 
     def _growth(self, vector):
         """Return the rate (1/s) at which what cannot be seen yet grows from a start, or 0."""
-        if not (self._may_grow and (grows := unstable(self.scene)).may_grow(vector)):
+        if not self._may_grow:
             return 0.0
-        wrench = self.wrench or Wrench()
+        grows, wrench = unstable(self.scene), self.wrench or Wrench()
+        if not grows.may_grow(hypot3(*vector[ANGULAR_VELOCITY].tolist())):
+            return 0.0
         with np.errstate(all='ignore'):    # numbers that are beyond doubles grow nowhere
             unseen = grows.shown(vector, wrench) < UNSEEN
             return grows.rate(vector, wrench) if unseen else 0.0
 
     def _unclear(self, starts, rates):
-        """Return which of some slow bodies it takes `_growth` for, whose |omega| is `rates`."""
-        times = starts[:, TIME]
-        if not len(times) or times.min() < times.max():    # other things may act on them
-            return np.full(len(times), True)
+        """Return the bodies that it takes `_growth` for, of starts whose |omega| is `rates`."""
+        if not self._may_grow:
+            return []
+        grows = unstable(self.scene)
+        found = np.flatnonzero(grows.may_grow(rates))
+        times = starts[found, TIME]
+        if not len(found) or times.min() < times.max():    # other things may act on them
+            return found
         actors = self._ledger.actors
-        found = actors.rates(actors.held(float(times[0])), np.ascontiguousarray(starts))
-        x, y, z = found[:, ANGULAR_IMPULSE].T
-        return unstable(self.scene).unclear(rates, np.sqrt(x * x + y * y + z * z))
+        x, y, z = actors.rates(actors.held(float(times[0])), starts[found])[:, ANGULAR_IMPULSE].T
+        return found[grows.unclear(rates[found], np.sqrt(x * x + y * y + z * z))]
 
     @property
     def _slow(self):
@@ -292,8 +297,7 @@ class Stepped:
             with _naming(body):
                 self.start(starts[body])._within(first, last)
         on_all_cores(side_by_side, len(starts), 16 * LANES)
-        slow = np.flatnonzero(rates < self._slow)
-        for body in slow[self._unclear(starts[slow], rates[slow])]:
+        for body in self._unclear(starts, rates):
             if self._growth(starts[body]):    # side by side bodies go in no stretches
                 one_by_one(slice(body, body + 1))
 

@@ -192,8 +192,8 @@ def side_by_side(monkeypatch, failed, carried=False):
     batch = types.SimpleNamespace(
         run=lambda starts, out: asked.append(starts[:, 1].tolist()) or failed(starts))
     of = types.SimpleNamespace(
-        _may_wind=False, _bound=None, _carried=carried, scene='scene', _slow=0.0,
-        _unclear=lambda starts, rates: np.full(len(starts), True),
+        _may_wind=False, _bound=None, _carried=carried, scene='scene',
+        _unclear=lambda starts, rates: [],
         method=types.SimpleNamespace(FAMILY=types.SimpleNamespace(
             LANES=True, batch=lambda bound, of, times: batch)),
         start=lambda vector: types.SimpleNamespace(
