@@ -241,10 +241,12 @@ def test_what_has_no_value_at_a_state_or_beside_it_grows_nowhere(torque):
     assert Stepped(one, 'dop8', accuracy=1e-9)._growth(one.initial.vector) == 0.0
 
 
-def test_numbers_beyond_doubles_grow_nowhere():
+def test_the_rate_of_the_largest_numbers_that_a_scene_takes_is_a_number():
+    """The square of it is g/r."""
     one = scene('gravity: {g: 1.0e75}, drag: {angular: 1.0e-3}', 'pivot',
                 center='[0, 0, 1.0e70]')
-    assert Stepped(one, 'dop8', accuracy=1e-9)._growth(one.initial.vector) == 0.0
+    found = Stepped(one, 'dop8', accuracy=1e-9)._growth(one.initial.vector)
+    assert found == near(math.sqrt(1e5), rel=1e-7)
 
 
 @pytest.mark.without_numba
