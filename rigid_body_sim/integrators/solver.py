@@ -147,8 +147,10 @@ class Stepped:
         started.__dict__ = self.__dict__.copy()
         started.vector = vector = np.array(vector, dtype=float)
         started.begin, _, _, _, _, wx, wy, wz, *_ = vector.tolist()
-        started._latest = _latest(started.begin, hypot3(wx, wy, wz))
-        started._course = started._before_march() or started._marching()
+        speed = hypot3(wx, wy, wz)
+        started._latest = _latest(started.begin, speed)
+        before = self._departs or speed < self._slow
+        started._course = (before and started._before_march()) or started._marching()
         return started
 
     @functools.cached_property
@@ -227,7 +229,7 @@ class Stepped:
         x, y, z = actors.rates(actors.held(float(times[0])), starts[found])[:, ANGULAR_IMPULSE].T
         return found[grows.unclear(rates[found], np.sqrt(x * x + y * y + z * z))]
 
-    @property
+    @functools.cached_property
     def _slow(self):
         """The rate (rad/s) of a start from which something faster may grow, at most."""
         return unstable(self.scene).slow if self._may_grow else 0.0
