@@ -53,17 +53,21 @@ UNBOUNDED = 1.0   # rad/s, where the bound of r is not known
 TURN, OMEGA, PLACE = range(3)    # the unknowns whose rates are looked at; then the velocity
 
 
+@kept
+def slowest(scene):
+    """Return a rate (rad/s): in a body that turns faster nothing grows faster than it turns."""
+    if scene.inner_dissipation > 0.0 or pushed_unbounded(scene):
+        return math.inf
+    swing = swing_rate(scene)
+    return swing if scene.constraint.axis is None else STILL * swing
+
+
 class Unstable:
     """What may let a deviation grow faster than the body turns, in a scene.
 
     Parameters
     ----------
     scene : Scene
-
-    Attributes
-    ----------
-    slow : float
-        A body that turns faster than this has nothing that grows faster, rad/s.
     """
 
     def __init__(self, scene):
@@ -76,11 +80,8 @@ class Unstable:
         self._hinge = scene.constraint.axis
         self._held = scene_parameters(scene).through
         self._moves = scene.constraint.mechanism is Mechanism.FREE
-        if self._open or self._heat > 0.0:
-            self.slow = math.inf
-        else:
-            self.slow = self._still if self._hinge is None else STILL * self._still
-        self._dynamics = Dynamics(scene) if self.slow > 0.0 else None
+        self._slow = slowest(scene)
+        self._dynamics = Dynamics(scene)
 
     def _bound(self, speed):
         """Return a bound of r for a body that turns with a speed (rad/s)."""
@@ -89,7 +90,7 @@ class Unstable:
 
     def may_grow(self, speed):
         """Return whether a deviation may grow faster than a body turns, at rates (rad/s)."""
-        return (speed < self.slow) & (self._open | (speed < self._bound(speed)))
+        return (speed < self._slow) & (self._open | (speed < self._bound(speed)))
 
     def unclear(self, speeds, torques):
         """Return which of many bodies take a look at the rates, from |omega| and |torque|, (n,).

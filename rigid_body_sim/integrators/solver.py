@@ -25,7 +25,7 @@ from rigid_body_sim.compilation.threads import on_all_cores
 from rigid_body_sim.errors import BadInput, NotConverged
 from rigid_body_sim.integrators import GENERAL, METHODS, runnable
 from rigid_body_sim.integrators.departure import Arriving, Departing, applies, departure
-from rigid_body_sim.integrators.growing import UNSEEN, Growing, unstable
+from rigid_body_sim.integrators.growing import UNSEEN, Growing, slowest, unstable
 from rigid_body_sim.integrators.marching.course import lost
 from rigid_body_sim.integrators.marching.points import REACHED
 from rigid_body_sim.integrators.protocols import FINEST
@@ -218,7 +218,7 @@ class Stepped:
 
     def _unclear(self, starts, rates):
         """Return the bodies that it takes `_growth` for, of starts whose |omega| is `rates`."""
-        if not self._may_grow:
+        if not (rates < self._slow).any():
             return []
         grows = unstable(self.scene)
         found = np.flatnonzero(grows.may_grow(rates))
@@ -232,7 +232,7 @@ class Stepped:
     @functools.cached_property
     def _slow(self):
         """The rate (rad/s) of a start from which something faster may grow, at most."""
-        return unstable(self.scene).slow if self._may_grow else 0.0
+        return slowest(self.scene) if self._may_grow else 0.0
 
     def state(self, time, out):
         """Fill out, shape (14,), with the state at a time (s); raises what `states` raises."""
