@@ -100,6 +100,7 @@ docs: .venv-docs/stamp ## the pages as a site, in .cache/site: tutorial, how-to,
 bench: .venv/run.stamp ## cost of one state in closed form; energy over a million steps; instructions of a step; recordings: writing, size, reading; sweeps
 	.venv/bin/python bench/closed_forms.py
 	.venv/bin/python bench/energy.py
+	.venv/bin/python bench/unstable_starts.py
 	.venv/bin/python bench/instructions.py
 	.venv/bin/python bench/recordings.py
 	.venv/bin/python bench/smooth_scenes.py

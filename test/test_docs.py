@@ -71,7 +71,7 @@ def test_every_scene_has_a_page():
 COST = re.compile(r'\d\s?(?:us|µs|ns)\b|\b(?:a|\d[\d.]*) microseconds?|\d CPU (?:s\b|seconds|ms)'
                   r'|\d (?:%|s) of (?:a core|CPU)|million (?:states|messages|runs)')
 COMMAND = re.compile(r'bench/\w+\.py|make [a-z]|python -m rigid_body_sim')
-PROCESSOR, DAY = re.compile(r'Zen [35]|znver[35]'), re.compile(r'November 2026|2026-\d\d-\d\d')
+PROCESSOR, DAY = re.compile(r'Zen [345]|znver[345]'), re.compile(r'November 2026|2026-\d\d-\d\d')
 
 
 def _names_its_machine(text):
