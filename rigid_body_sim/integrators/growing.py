@@ -21,6 +21,7 @@ import math
 
 import numpy as np
 
+from rigid_body_sim.integrators.marching.course import fill
 from rigid_body_sim.mechanics.balance import Dynamics
 from rigid_body_sim.mechanics.bounds import falling, pushed_unbounded, relaxation, swing_rate
 from rigid_body_sim.mechanics.parameters import scene_parameters
@@ -275,9 +276,4 @@ class Growing:
     def states(self, times, out):
         """Fill the rows of `out` with the states at times (s) not before the start."""
         self._reach(float(times.max()))
-        places = np.searchsorted(self._begins, times, side='right') - 1
-        for place in np.unique(places):
-            rows = np.flatnonzero(places == place)
-            part = np.empty((len(rows), STATE_SIZE))
-            self._course(int(place)).states(times[rows], part)
-            out[rows] = part
+        fill(times, out, self._begins, self._course)

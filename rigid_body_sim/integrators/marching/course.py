@@ -35,6 +35,24 @@ def stops_after(begin, breakpoints, stop=math.inf):
     return sorted({time for time in (*breakpoints, stop, math.inf) if time > begin})
 
 
+def fill(times, out, begins, course_of):
+    """Fill the rows of `out` with the states at times (s), each by the course that holds it.
+
+    Parameters
+    ----------
+    begins : list of float
+        Where the courses begin, s, in order; the first one not later than any of the times.
+    course_of : callable
+        The number of a course -> the course.
+    """
+    places = np.searchsorted(begins, times, side='right') - 1
+    for place in np.unique(places):
+        rows = np.flatnonzero(places == place)
+        part = np.empty((len(rows), STATE_SIZE))
+        course_of(int(place)).states(times[rows], part)
+        out[rows] = part
+
+
 def lost(method, scene, time):
     """Return the NotConverged of a march that ends at a time (s)."""
     time = float(time)

@@ -21,7 +21,7 @@ from rigid_body_sim.compilation.templates import specialise
 from rigid_body_sim.errors import NotConverged
 from rigid_body_sim.integrators.equations.euler import INVERSE
 from rigid_body_sim.integrators.marching import sides
-from rigid_body_sim.integrators.marching.course import NO_STEP, Course, stops_after
+from rigid_body_sim.integrators.marching.course import NO_STEP, Course, fill, stops_after
 from rigid_body_sim.integrators.marching.dips import dip
 from rigid_body_sim.integrators.marching.points import (
     SCALES,
@@ -154,12 +154,7 @@ class Switched:
     def states(self, times, out):
         """Fill the rows of `out` with the states at times (s) not before the start."""
         self._reach(float(times.max()))
-        places = np.searchsorted(self._begins, times, side='right') - 1
-        for place in np.unique(places):
-            rows = np.flatnonzero(places == place)
-            part = np.empty((len(rows), STATE_SIZE))
-            self._course(int(place)).states(times[rows], part)
-            out[rows] = part
+        fill(times, out, self._begins, self._course)
 
     def step_at(self, time):
         """Return when the step that holds a time (s) begins and ends, s."""
